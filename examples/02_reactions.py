@@ -12,7 +12,7 @@ import pendcore as pc
 
 scene = pc.Scene.textbook()
 weight = scene.links[0].mass * scene.gravity
-sol = pc.simulate(scene, q0=0.0, t_span=(0, 3), t_eval=np.linspace(0, 3, 1001))
+sol = pc.simulate(scene, (0, 3), 0.0, t_eval=np.linspace(0, 3, 1001))
 
 force = sol.reactions()  # (time, joint, x and y), N, on the link that begins at the joint
 print(f"at the start, in weights of one rod: F_01 = {force[0, 0] / weight}")

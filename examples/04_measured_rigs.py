@@ -31,7 +31,7 @@ for (name, bound), (angles, differences) in zip(BOUNDS.items(), axes, strict=Tru
     n = len(case.scene.links)
     t, q = rows[:, 0], rows[:, 1 : 1 + n]
 
-    sol = pc.simulate(case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, t_eval=t)
+    sol = pc.simulate(case.scene, case.t_span, case.q0, case.qd0, t_eval=t)
     off = sol.q - q
     print(f"{case.name}: within {np.abs(off).max():.4f} rad over {t[-1]:.2f} s; bound {bound} rad")
 

@@ -30,7 +30,7 @@ scene = pc.Scene(
         pc.effects.ViscousJoint(joint=2, damping=0.1),
     ],
 )
-sol = pc.simulate(scene, q0=[1.5, 1.5], t_span=(0, 30), ledger=True)
+sol = pc.simulate(scene, (0, 30), [1.5, 1.5], ledger=True)
 
 for i in range(2):
     print(f"q_{i + 1}(30) = {np.degrees(sol.q[-1, i]):.4f} deg")

@@ -15,7 +15,7 @@ scene = pc.Scene.textbook()
 over = [pc.events.JointAngle(2, side * np.pi, terminal=True, name="over") for side in (-1, 1)]
 for degrees in (90, 100, 110, 120):
     start = pc.angles_from_vertical(np.radians([degrees, degrees]))
-    sol = pc.simulate(scene, q0=start, t_span=(0, 100), events=over)
+    sol = pc.simulate(scene, (0, 100), start, events=over)
     when = f"turns over at t = {sol.t[-1]:.6f} s" if sol.status == "event" else "does not turn over"
     print(f"from {degrees} degrees: {when}")
 
@@ -25,8 +25,8 @@ figure, axis = plt.subplots(layout="constrained")
 for degrees in (-55, -30, -10, 5, 20, 35, 50, 65):
     theta = np.radians([0, degrees])
     left = ENERGY - scene.gravity / 2 * (1 - np.cos(theta[1]))
-    start = pc.angles_from_vertical(theta), [-np.sqrt(1.5 * left), 0]
-    sol = pc.simulate(scene, *start, t_span=(0, 1000), store="end", events=[section])
+    q0, qd0 = pc.angles_from_vertical(theta), [-np.sqrt(1.5 * left), 0]
+    sol = pc.simulate(scene, (0, 1000), q0, qd0, store="end", events=[section])
     angles = pc.angles_to_vertical(np.array([found.q for found in sol.events[0]]))[:, 1]
     rates = np.array([found.qd[1] for found in sol.events[0]])
     axis.plot(np.degrees(angles), rates, ".", markersize=2)

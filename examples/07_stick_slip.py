@@ -14,7 +14,7 @@ import pendcore as pc
 rubbed = [pc.effects.DryJointFriction(joint=j, coulomb=tc) for j, tc in ((1, 5.0), (2, 1.5))]
 hum = pc.effects.Sinusoid(amplitude=10.0, angular_frequency=1.0)
 scene = pc.Scene.textbook().replace(effects=[*rubbed, pc.effects.Motor(joint=1, sinusoid=hum)])
-sol = pc.simulate(scene, q0=np.pi / 2, t_span=(0, 9), rtol=1e-11)
+sol = pc.simulate(scene, (0, 9), np.pi / 2, rtol=1e-11)
 
 phid = np.diff(sol.qd, axis=1, prepend=0.0)  # rates of the joints: exactly 0 where they stick
 rest = sol.t[(phid == 0).all(axis=1) & (abs(sol.t - 5.8) < 0.5)]

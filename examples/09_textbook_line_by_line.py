@@ -96,7 +96,7 @@ Path("RR.m").write_text(book.to_octave("RR"), encoding="utf-8")
 # %  t0 = 0; tf = 5; time = [0 tf];  x0 = [pi/4; 0; pi/3; 0];
 # %  [t,xs] = ode45(g, time, x0);    and with the function file    [t,xs] = ode45(@RR, time, x0);
 # MATLAB's x is (q1, qd1, q2, qd2). The method is ode45's; its default tolerances are 1e-3 and 1e-6.
-run = pc.simulate(scene, q0=[pi / 4, pi / 3], qd0=[0, 0], t_span=(0, 5), method="ode45")
+run = pc.simulate(scene, (0, 5), [pi / 4, pi / 3], [0, 0], method="ode45")
 print(f"q1(5) = {run.q[-1, 0]:.6f}, q2(5) = {run.q[-1, 1]:.6f} rad")
 
 # %  x1 = xs(:,1);  x3 = xs(:,3);

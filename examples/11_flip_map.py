@@ -16,7 +16,7 @@ over = case.options["events"][0]
 theta = np.radians(np.linspace(-177, 177, 60))  # from hanging
 q0 = pc.angles_from_vertical(np.stack(np.meshgrid(theta, theta, indexing="ij"), axis=-1))
 
-turned = pc.ensemble(case.scene, q0=q0, t_span=case.t_span, keep=pc.keep.FirstEvent(over))
+turned = pc.ensemble(case.scene, case.t_span, q0, keep=pc.reducers.FirstEvent(over))
 print(turned)
 resolved = turned.resolved()
 print(f"{resolved.mean():.1%} of the pixels are resolved")

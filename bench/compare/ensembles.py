@@ -78,7 +78,7 @@ def scene(case: Case) -> pc.Scene:
 
 def starts(n: int, count: int) -> Array:
     """Return the first so many random starts, rad, (count, n)."""
-    drawn: Array = pc.draw.uniform(-np.pi, np.pi, (count, n), seed=1)
+    drawn: Array = pc.sampling.uniform(-np.pi, np.pi, (count, n), seed=1)
     return drawn
 
 

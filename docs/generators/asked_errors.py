@@ -38,7 +38,7 @@ ROUNDS = 30
 OPTIONS_OF_TRIALS = {
     name: option.default
     for name, option in OPTIONS.items()
-    if not (option.chosen_for_error or name in ("check", "error", "progress"))
+    if not (option.chosen_for_error or name in ("on_failure", "error", "progress"))
 }
 Timed: TypeAlias = Callable[..., object]
 BEGIN, END = "<!-- asked: begin -->\n", "<!-- asked: end -->"

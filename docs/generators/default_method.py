@@ -51,7 +51,7 @@ def timed(
     """Run all ways in turns; return their last solutions and their shortest times, s."""
     solutions: dict[str, pc.Solution] = {}
     seconds = dict.fromkeys(ways, inf)
-    times = time_grid(*arguments[3])
+    times = time_grid(*arguments[1])
     for number in range(rounds):
         for name in random.Random(number).sample([*ways], len(ways)):
             begin = perf_counter()
@@ -62,7 +62,7 @@ def timed(
 
 def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
     """Return a function that measures an error against a method that is not the solution's."""
-    times = time_grid(*arguments[3])
+    times = time_grid(*arguments[1])
     known = {
         method: pc.simulate(*arguments, t_eval=times, method=method, **EXACT).q
         for method in METHODS[1:]
@@ -94,7 +94,7 @@ def of_chain(n: int) -> dict[str, Any]:
     """Return the least time of each method at each error, over that of dop853, with one damper."""
     links = [pc.Link(mass=1.0, length=1.0)] * n
     scene = pc.Scene(links=links, effects=[pc.effects.ViscousJoint(joint=1, damping=0.01)])
-    arguments = (scene, np.linspace(0.6, 1.0, n), 0.0, (0.0, SPANS[n]))
+    arguments = (scene, (0.0, SPANS[n]), np.linspace(0.6, 1.0, n), 0.0)
     error = exact(arguments)
     ways = {
         f"{method} {k}": {"method": method, "rtol": 10.0 ** (-k / 2), "atol": 10.0 ** (-k / 2 - 3)}

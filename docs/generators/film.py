@@ -19,7 +19,7 @@ UNTIL = 12.0  # s
 def runs() -> list[pc.Solution]:
     scene = pc.Scene.textbook()
     return [
-        pc.simulate(scene, q0=[-0.6, -0.9 + k * APART], t_span=(0, UNTIL), rtol=1e-11, atol=1e-12)
+        pc.simulate(scene, (0, UNTIL), [-0.6, -0.9 + k * APART], rtol=1e-11, atol=1e-12)
         for k in range(3)
     ]
 

@@ -76,7 +76,7 @@ def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
     members = members_of(BOOK, q0, 0.0, None)
     forbidden = np.all([is_forbidden(members, one) for one in EVENTS.values()], axis=0)
     begin = perf_counter()
-    keep = {name: pc.keep.FirstEvent(one) for name, one in EVENTS.items()}
+    keep = {name: pc.reducers.FirstEvent(one) for name, one in EVENTS.items()}
     asked = {"t_span": (0, t_end), "keep": keep, "max_steps": 10**9, "workers": workers}
     found = pc.ensemble(BOOK, q0=q0[~forbidden], **asked, progress=True)
     seconds = perf_counter() - begin
@@ -141,7 +141,7 @@ def checked(found: dict[str, Any], count: int, pixels: int) -> dict[str, Any]:
     may = found["resolved"] & ~found["forbidden"]
     may[count // 2 :] = False  # mirror images
     places = np.argwhere(may)
-    drawn = places[(pc.draw.uniform(0, 1, pixels, seed=3) * len(places)).astype(int)]
+    drawn = places[(pc.sampling.uniform(0, 1, pixels, seed=3) * len(places)).astype(int)]
     flip = found["flip"][tuple(drawn.T)]
     until = np.fmin(np.where(np.isnan(flip), LONGEST, 1.01 * flip + 2 * GRID), LONGEST)
     starts = [tuple(float(x) for x in theta[place]) for place in drawn]

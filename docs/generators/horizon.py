@@ -71,9 +71,9 @@ def slopes() -> dict[str, dict[str, list[float]]]:
     for case in record.chaotic_starts():
         work = pc.horizon_work(
             case.scene,
-            case.q0,
-            case.qd0,
-            (0, 30),
+            q0=case.q0,
+            qd0=case.qd0,
+            t_span=(0, 30),
             methods=METHODS,
             rtols=FIVE_RTOLS,
             progress=False,
@@ -97,7 +97,7 @@ def slopes() -> dict[str, dict[str, list[float]]]:
 def neighbours() -> list[float]:
     """Return the largest exponent over 1000 s of starts that are next to this one, 1/s."""
     starts = [[START[0] + k * 1e-12, START[1]] for k in range(40)]
-    return [pc.lyapunov(BOOK, q0, 0, (0, 1000), count=1).largest for q0 in starts]
+    return [pc.lyapunov(BOOK, (0, 1000), q0, count=1).largest for q0 in starts]
 
 
 def mean_and_interval(values: list[float]) -> tuple[float, float]:
@@ -154,10 +154,10 @@ def draw_run(path: Path) -> None:
     """Draw one run, what is past its horizon, and its error: true, estimated, largest so far."""
     from matplotlib.figure import Figure
 
-    run = pc.simulate(BOOK, q0=START, qd0=0, t_span=SPAN)
+    run = pc.simulate(BOOK, SPAN, START)
     times = np.linspace(*SPAN, 281)
     true = np.abs(run(times)[:2].T - truth(times)).max(axis=1)
-    found, valid = run.error(), run.valid_until(LIMIT)
+    found, valid = run.estimate_error(), run.valid_until(LIMIT)
     sheet = Figure(figsize=(7.2, 6.4), layout="constrained")
     above, middle, below = sheet.subplots(3, 1, sharex=True, height_ratios=[1, 1, 1.5])
     run.plot([above, middle], horizon=LIMIT)
@@ -222,8 +222,10 @@ def draw_exponents(spectrum: pc.LyapunovExponents, path: Path) -> None:
 
 def main() -> None:
     mpl.use("Agg")
-    spectrum = pc.lyapunov(BOOK, START, 0, (0, 1000), t_eval=np.geomspace(0.5, 1000, 400))
-    work = pc.horizon_work(BOOK, START, 0, (0, 30), limit=LIMIT, time_limit=600, progress=True)
+    spectrum = pc.lyapunov(BOOK, (0, 1000), START, t_eval=np.geomspace(0.5, 1000, 400))
+    work = pc.horizon_work(
+        BOOK, q0=START, t_span=(0, 30), limit=LIMIT, time_limit=600, progress=True
+    )
     found = {
         "exponents": spectrum.exponents.tolist(),
         "long": 1000.0,

@@ -46,8 +46,8 @@ def drift(steps: int, compensated: bool) -> dict[str, Any]:
     """Return the drift at every thousandth step of the textbook's case."""
     times = np.arange(0, steps + 1, 1000) * STEP
     sol = pc.simulate(
-        BOOK, q0=[np.pi / 4, np.pi / 3], qd0=0, t_span=(0, steps * STEP), t_eval=times,
-        method="dopri5", max_step=STEP, first_step=STEP, max_steps=2 * steps, compensated=compensated,
+        BOOK, (0, steps * STEP), [np.pi / 4, np.pi / 3], t_eval=times, method="dopri5",
+        max_step=STEP, first_step=STEP, max_steps=2 * steps, compensated=compensated,
     )  # fmt: skip
     found = sol.energy()
     change = found.total - found.total[0]
@@ -70,7 +70,7 @@ def walks(steps: list[int], starts: int, compensated: bool) -> npt.NDArray[np.fl
     with mp.workdps(40):
         for q0 in rng.uniform(np.pi / 2 - 0.9, np.pi / 2 + 0.9, (starts, 2)):
             how = {"method": "dopri5", "store": "end", "step": FINE, "compensated": compensated}
-            sol = pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, 0), **how)
+            sol = pc.simulate(BOOK, (0, 0), q0, **how)
             begun = energy(sol.run.__getstate__())
             row = []
             for count in steps:
@@ -89,8 +89,8 @@ def slope(steps: list[int], rms: npt.NDArray[np.float64]) -> float:
 
 def time_kept(steps: int) -> dict[str, Any]:
     """Return how far the time of fixed steps is from their number times their size, s."""
-    sol = pc.simulate(BOOK, q0=0.3, qd0=0, t_span=(0, 1.01 * steps * STEP), method="dopri5",
-                      step=STEP, store="end", max_steps=steps, check=False)  # fmt: skip
+    sol = pc.simulate(BOOK, q0=0.3, t_span=(0, 1.01 * steps * STEP), method="dopri5",
+                      step=STEP, store="end", max_steps=steps, on_failure="ignore")  # fmt: skip
     state = sol.run.__getstate__()
     exact = steps * Fraction(STEP)
     plain = float(np.add.accumulate(np.full(steps, STEP))[-1])

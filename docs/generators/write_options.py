@@ -30,12 +30,14 @@ Written by docs/generators/write_options.py from the descriptors of the options.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypedDict
+from typing import Literal, TypeAlias, TypedDict
 
 import numpy.typing as npt
 
 from pendcore.messages.progress import Progress
 from pendcore.run.events import Event
+
+OnFailure: TypeAlias = Literal["warn", "raise", "ignore"]
 
 
 class RunKeywords(TypedDict, total=False):

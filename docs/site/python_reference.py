@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pendcore
-from pendcore import draw, effects, events, keep
+from pendcore import effects, events, reducers, sampling
 
 GROUPS = {
     "Scenes": ["Scene", "Link", "Mobility", "Explanation"],
@@ -26,7 +26,7 @@ GROUPS = {
 
 def public_names() -> set[str]:
     """Return what `pendcore` offers, without its modules."""
-    modules = {"draw", "effects", "events", "keep"}
+    modules = {"effects", "events", "reducers", "sampling"}
     return {*pendcore.__all__} - modules - {"__version__"}
 
 
@@ -40,8 +40,8 @@ def write(folder: Path) -> None:
         *((title, "pendcore", pendcore, names) for title, names in GROUPS.items()),
         ("Effects", "pendcore.effects", effects, list(effects.__all__)),
         ("Events", "pendcore.events", events, list(events.__all__)),
-        ("What ensembles keep", "pendcore.keep", keep, list(keep.__all__)),
-        ("Random starts", "pendcore.draw", draw, list(draw.__all__)),
+        ("What ensembles keep", "pendcore.reducers", reducers, list(reducers.__all__)),
+        ("Random starts", "pendcore.sampling", sampling, list(sampling.__all__)),
     ]
     index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
     hidden = []

@@ -9,7 +9,7 @@
     scene = scene.replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.1)])
     print(scene.explain())                       # what is simulated, what is not, how fast it moves
 
-    sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], qd0=[0, 0], t_span=(0, 5))
+    sol = pc.simulate(scene, (0, 5), [np.pi / 4, np.pi / 3])    # t_span in s, q0 in rad
     print(sol)                                   # what came of it
     sol.t, sol.q, sol.qd                         # s, rad, rad/s: (n_t,), (n_t, n), (n_t, n)
     sol(2.5)                                     # the state at any time: q_1, q_2, qd_1, qd_2
@@ -30,7 +30,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from pendcore import draw, effects, events, keep
+from pendcore import effects, events, reducers, sampling
 from pendcore._core import __version__
 from pendcore.accuracy.defect import Defect
 from pendcore.api.ensemble import ensemble
@@ -88,14 +88,14 @@ __all__ = [
     "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
-    "draw",
     "effects",
     "ensemble",
     "events",
     "horizon_work",
-    "keep",
     "load",
     "lyapunov",
     "read_case",
+    "reducers",
+    "sampling",
     "simulate",
 ]

@@ -3,7 +3,7 @@
     import pendcore as pc
 
     bottom = pc.events.LinkAngle(1, np.pi / 2)
-    sol = pc.simulate(scene, q0, t_span=(0, 10), events=[bottom, pc.events.RateZero(joint=2)])
+    sol = pc.simulate(scene, (0, 10), q0, events=[bottom, pc.events.RateZero(joint=2)])
     [event.t for event in sol.events[0]]
 
 Events change no bit of a run; with ``terminal`` they end it. docs/how_to/events.md says what is

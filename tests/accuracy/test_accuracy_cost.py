@@ -19,7 +19,7 @@ from pendcore.run.call import Start
 from pendcore.run.methods import known_methods, line_style
 
 BOOK = pc.Scene.textbook()
-START = ([np.pi / 4, np.pi / 3], 0, (0, 5))
+START = ((0, 5), [np.pi / 4, np.pi / 3])
 E = pc.effects
 PAIRS = tuple(one["name"] for one in pc._core.methods() if one["kind"] == "pair")
 QUICK = {"repeats": 2, "rtol": [1e-3, 1e-6, 1e-9]}
@@ -65,7 +65,7 @@ def test_second_runs_tell_the_error_of_the_first(method, rtol, reference_case):
     known = reference_case("textbook")
     times = {"t_eval": known.t, "method": method, "rtol": rtol, "atol": rtol / 1000}
     first = pc.simulate(BOOK, *START, **times)
-    found = first.error()
+    found = first.estimate_error()
     assert not found.verified_by.startswith(method)
     true = abs(tips(first.q, [1, 1]) - tips(known.q, [1, 1])).max() / 2
     assert true <= found.largest <= 1.2 * true
@@ -84,7 +84,7 @@ def test_the_errors_are_those_against_multiple_precision(book, reference_case):
 
 
 def test_no_method_is_its_own_reference():
-    start = Start(BOOK, *START[:2], *START[2])
+    start = Start(BOOK, START[1], 0, *START[0])
     found = reference(start, stiff=False, points=101, time_limit=10)
     assert found.first.method != found.second.method
     for solution in (found.first, found.second):
@@ -203,7 +203,7 @@ def test_the_figure_refuses_what_it_cannot_draw(book, options, error):
 
 
 def test_a_chaotic_span_is_cut_to_what_can_be_followed():
-    found = pc.accuracy_cost(BOOK, [-1.5, -1.4], 0, (0, 100), **QUICK, methods=["dopri5"])
+    found = pc.accuracy_cost(BOOK, q0=[-1.5, -1.4], t_span=(0, 100), **QUICK, methods=["dopri5"])
     assert found.asked_t_span == (0, 100)
     assert 10 < found.t_span[1] < 30
     assert found.uncertainty <= 1e-6
@@ -220,14 +220,14 @@ def test_a_chaotic_span_is_cut_to_what_can_be_followed():
     ids=["rubbed", "stopped"],
 )
 def test_scenes_in_pieces_are_measured_too(effects):
-    found = pc.accuracy_cost(BOOK.replace(effects=effects), [0.7, 1.0], 0, (0, 3), **QUICK)
+    found = pc.accuracy_cost(BOOK.replace(effects=effects), q0=[0.7, 1.0], t_span=(0, 3), **QUICK)
     assert found.best(1e-5).error < 1e-5
     assert found.t_span == (0, 3)
 
 
 def test_a_stiff_scene_is_measured_and_what_takes_too_long_says_so():
     scene = BOOK.replace(effects=[E.ViscousJoint(joint=2, damping=1e7)])
-    found = pc.accuracy_cost(scene, [0.7, 1.0], 0, (0, 5), **QUICK, time_limit=2.0)
+    found = pc.accuracy_cost(scene, q0=[0.7, 1.0], t_span=(0, 5), **QUICK, time_limit=2.0)
     failed = {p.method: p for p in found if p.failure}
     assert "took more than" in failed["dopri5"].failure
     assert failed["dopri5"].error == math.inf
@@ -286,7 +286,7 @@ def test_progress_only_grows():
 
 def test_what_looks_wrong_is_said_once():
     with pytest.warns(pc.PendcoreWarning) as caught:
-        pc.accuracy_cost(BOOK, [45, 60], 0, (0, 1), **QUICK, methods="dopri5")
+        pc.accuracy_cost(BOOK, q0=[45, 60], t_span=(0, 1), **QUICK, methods="dopri5")
     assert len(caught) == 1
 
 

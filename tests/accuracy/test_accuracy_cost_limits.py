@@ -19,7 +19,7 @@ SWING = ([1.5, 1.5], 0)
 
 def test_without_time_for_repeats_it_says_so():
     slow = BOOK.replace(effects=[E.User(lambda t, q, qd: -0.1 * qd)])
-    found = pc.accuracy_cost(slow, [0.7, 1.0], 0, (0, 1), repeats=1000, time_limit=1.5)
+    found = pc.accuracy_cost(slow, q0=[0.7, 1.0], t_span=(0, 1), repeats=1000, time_limit=1.5)
     assert any("the time was up" in remark for remark in found.remarks)
     assert min(p.repeats for p in found if not p.failure) < 1000
 
@@ -28,7 +28,7 @@ def test_without_time_for_repeats_it_says_so():
 @pytest.mark.unsanitized
 def test_a_span_too_long_for_its_time_is_cut_and_says_so(span):
     begin = time.monotonic()
-    found = pc.accuracy_cost(BOOK, [1.5, 1.5], 0, span, time_limit=1.0)
+    found = pc.accuracy_cost(BOOK, q0=[1.5, 1.5], t_span=span, time_limit=1.0)
     assert time.monotonic() - begin < 2
     assert found.asked_t_span == span
     assert found.t_span[0] == span[0]
@@ -39,7 +39,7 @@ def test_a_span_too_long_for_its_time_is_cut_and_says_so(span):
 
 
 def test_a_long_stiff_span_is_cut_too():
-    found = pc.accuracy_cost(STIFF, *SWING, (0, 1e6), time_limit=2.0)
+    found = pc.accuracy_cost(STIFF, (0, 1e6), *SWING, time_limit=2.0)
     assert "too little for more" in found.remarks[0]
     assert found.best(1e-3).method not in ("dopri5", "dop853", "taylor", "rk4")
 
@@ -47,7 +47,7 @@ def test_a_long_stiff_span_is_cut_too():
 def test_a_span_that_cannot_be_run_to_its_end_is_cut_with_the_reason():
     ends = E.User(lambda t, q, qd: [math.nan if t > 3 else 0.0, 0.0])
     scene = BOOK.replace(effects=[ends])
-    found = pc.accuracy_cost(scene, *SWING, (0, 10), time_limit=60.0, rtol=[1e-3, 1e-6], repeats=1)
+    found = pc.accuracy_cost(scene, (0, 10), *SWING, time_limit=60.0, rtol=[1e-3, 1e-6], repeats=1)
     assert 2.5 < found.t_span[1] <= 3
     assert "got no farther: the motion stopped being finite" in found.remarks[0]
 
@@ -55,11 +55,11 @@ def test_a_span_that_cannot_be_run_to_its_end_is_cut_with_the_reason():
 def test_what_cannot_be_run_at_all_says_why():
     scene = BOOK.replace(effects=[E.User(lambda t, q, qd: [math.nan, 0.0])])
     with pytest.raises(ValueError, match=r"no two methods got beyond .* stopped being finite"):
-        pc.accuracy_cost(scene, *SWING, (0, 10))
+        pc.accuracy_cost(scene, (0, 10), *SWING)
 
 
 def test_a_cut_span_has_a_grid_that_ends_with_it():
-    found = pc.accuracy_cost(BOOK, [0.7, 1.0], 0, (0, 1e6), time_limit=0.5)
+    found = pc.accuracy_cost(BOOK, q0=[0.7, 1.0], t_span=(0, 1e6), time_limit=0.5)
     assert found.times >= 2
     reached = [p.error for p in found if not p.failure]
     assert all(math.isfinite(error) for error in reached)
@@ -68,7 +68,7 @@ def test_a_cut_span_has_a_grid_that_ends_with_it():
 
 def test_what_was_not_tried_for_want_of_time_is_named():
     slow = BOOK.replace(effects=[E.User(lambda t, q, qd: -0.1 * qd)])
-    found = pc.accuracy_cost(slow, *SWING, (0, 0.5), time_limit=1e-3, methods=["dopri5", "rk4"])
+    found = pc.accuracy_cost(slow, (0, 0.5), *SWING, time_limit=1e-3, methods=["dopri5", "rk4"])
     (remark,) = [x for x in found.remarks if "before these were tried" in x]
     assert remark.endswith("a larger time_limit than 0.001 s includes them")
     tried = [p.rtol for p in found if p.method == "dopri5"]
@@ -118,13 +118,15 @@ def test_what_cannot_be_measured_is_named(options, complaint):
 
 def test_one_method_may_be_given_by_its_name():
     few = {"rtol": [1e-3, 1e-6], "repeats": 1}
-    found = pc.accuracy_cost(BOOK, [0.7, 1.0], 0, (0, 1), methods="DOP853", **few)
+    found = pc.accuracy_cost(BOOK, q0=[0.7, 1.0], t_span=(0, 1), methods="DOP853", **few)
     assert {p.method for p in found} == {"dop853"}
 
 
 @pytest.mark.parametrize("error", [0, -1, np.nan])
 def test_no_error_is_none_to_ask_for(error):
-    found = pc.accuracy_cost(BOOK, [0.7, 1.0], 0, (0, 1), methods="dop853", rtol=1e-6, repeats=1)
+    found = pc.accuracy_cost(
+        BOOK, q0=[0.7, 1.0], t_span=(0, 1), methods="dop853", rtol=1e-6, repeats=1
+    )
     for asked in (found.best, found.sentence):
         with pytest.raises(ValueError, match="must be > 0, a share of the total length"):
             asked(error)
@@ -132,6 +134,6 @@ def test_no_error_is_none_to_ask_for(error):
 
 @pytest.mark.parametrize("limit", [0, -1, np.nan])
 def test_an_estimate_of_the_error_checks_its_limit_too(limit):
-    sol = pc.simulate(BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 1))
+    sol = pc.simulate(BOOK, q0=[0.7, 1.0], t_span=(0, 1))
     with pytest.raises(ValueError, match=r"time_limit = .*: must be > 0 \(s\)"):
-        sol.error(time_limit=limit)
+        sol.estimate_error(time_limit=limit)

@@ -28,7 +28,7 @@ FEW = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 
 @pytest.fixture(scope="module")
 def work() -> pc.HorizonWork:
-    return pc.horizon_work(BOOK, CHAOTIC, 0, (0, 30), rtols=FEW)
+    return pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 30), rtols=FEW)
 
 
 def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
@@ -41,7 +41,7 @@ def test_a_digit_buys_ln_10_over_lambda_seconds_on_average() -> None:
     student = 3.75  # 24 degrees of freedom
     shares: dict[str, list[float]] = {}
     for case in chaotic_starts()[::2]:
-        found = pc.horizon_work(case.scene, case.q0, case.qd0, (0, 30), rtols=FEW)
+        found = pc.horizon_work(case.scene, q0=case.q0, qd0=case.qd0, t_span=(0, 30), rtols=FEW)
         assert found.seconds_a_digit == pytest.approx(np.log(10) / found.exponent)
         for method in found.methods:
             shares.setdefault(method, []).append(found.measured(method) / found.seconds_a_digit)
@@ -64,19 +64,10 @@ def test_every_point_is_a_run_of_its_own(work: pc.HorizonWork) -> None:
         assert (np.diff([point.nfev for point in points]) > 0).all()
         assert all(1e-6 < point.seconds < 1 for point in points)
     one = work.of("dop853")[1]
-    run = pc.simulate(
-        BOOK, q0=CHAOTIC, qd0=0, t_span=(0, 30), method="dop853", rtol=1e-6, atol=1e-9
-    )
+    run = pc.simulate(BOOK, q0=CHAOTIC, t_span=(0, 30), method="dop853", rtol=1e-6, atol=1e-9)
     assert run.valid_until(work.limit) == one.valid
     so_far = pc.simulate(
-        BOOK,
-        q0=CHAOTIC,
-        qd0=0,
-        t_span=(0, one.valid),
-        method="dop853",
-        rtol=1e-6,
-        atol=1e-9,
-        store="end",
+        BOOK, q0=CHAOTIC, t_span=(0, one.valid), method="dop853", rtol=1e-6, atol=1e-9, store="end"
     )
     assert so_far.stats.nfev == one.nfev
 
@@ -111,7 +102,7 @@ def labels(axis: Any) -> list[Any]:
 
 
 def test_what_is_valid_to_the_end_is_marked_as_that() -> None:
-    regular = pc.horizon_work(BOOK, [1.5, 1.6], 0, (0, 2), rtols=[1e-6, 1e-8])
+    regular = pc.horizon_work(BOOK, q0=[1.5, 1.6], t_span=(0, 2), rtols=[1e-6, 1e-8])
     rows = str(regular).splitlines()[2:]
     assert len(rows) == 6
     assert all(re.fullmatch(r"\w+ +1e-0[68] +2.00 s +\d+ us  to the end", row) for row in rows)
@@ -132,17 +123,19 @@ def test_it_says_what_there_was_no_time_for_and_why_there_is_no_exponent() -> No
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, progress=stop)
+        pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), rtols=FEW, progress=stop)
     found = raised.value.work  # type: ignore[attr-defined]
     assert found.untried[:2] == (("dopri5", 1e-10), ("dopri5", 1e-12))
     assert len(found.untried) == 12
     assert str(found).splitlines()[-1] == (
         "not tried before it was stopped: dopri5 at rtol 1e-10, 1e-12, dop853, taylor"
     )
-    short = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, time_limit=1e-9)
+    short = pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), rtols=FEW, time_limit=1e-9)
     assert "not tried before it was stopped: " in str(short)
     rubbed = pc.Scene(links=BOOK.links, effects=[E.DryJointFriction(joint=2, coulomb=1e-3)])
-    found = pc.horizon_work(rubbed, CHAOTIC, 0, (0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5])
+    found = pc.horizon_work(
+        rubbed, q0=CHAOTIC, t_span=(0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5]
+    )
     told = " ".join(str(found).split())
     assert "no Lyapunov exponent: effect 1 (dry_joint_friction): motions jump or stick" in told
     assert found.refusal.startswith("effect 1 (dry_joint_friction)")
@@ -166,13 +159,17 @@ def test_the_labels_of_its_figure_do_not_meet(work: pc.HorizonWork, spread: floa
 
 
 def test_where_nothing_grows_or_all_jumps_there_is_no_exponent() -> None:
-    regular = pc.horizon_work(BOOK, [1.5, 1.6], 0, (0, 2), methods=["dopri5"], rtols=[1e-6, 1e-8])
+    regular = pc.horizon_work(
+        BOOK, q0=[1.5, 1.6], t_span=(0, 2), methods=["dopri5"], rtols=[1e-6, 1e-8]
+    )
     assert [point.valid for point in regular.points] == [2.0, 2.0]
     assert np.isnan(regular.exponent)
     assert regular.seconds_a_digit == np.inf
     assert np.isnan(regular.measured("dopri5"))
     rubbed = pc.Scene(links=BOOK.links, effects=[E.DryJointFriction(joint=2, coulomb=1e-3)])
-    found = pc.horizon_work(rubbed, CHAOTIC, 0, (0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5])
+    found = pc.horizon_work(
+        rubbed, q0=CHAOTIC, t_span=(0, 15), methods=["dopri5"], rtols=[1e-3, 1e-5]
+    )
     assert found.growth is None
     assert found.points[0].valid < found.points[1].valid
 
@@ -186,10 +183,10 @@ def test_what_was_measured_so_far_is_not_lost() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, progress=stop)
+        pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), rtols=FEW, progress=stop)
     assert len(raised.value.work.points) == 2  # type: ignore[attr-defined]
     assert raised.value.work.growth is None  # type: ignore[attr-defined]
-    short = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), rtols=FEW, time_limit=1e-9)
+    short = pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), rtols=FEW, time_limit=1e-9)
     assert len(short.points) <= 1
 
 
@@ -204,10 +201,10 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("pendcore.horizon.measure.lyapunov", pressed)
     options: dict[str, Any] = {"methods": "dopri5", "rtols": [1e-3, 1e-5, 1e-7]}
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), progress=stop, **options)
+        pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), progress=stop, **options)
     assert len(raised.value.work.points) == 2  # type: ignore[attr-defined]
     with pytest.raises(KeyboardInterrupt) as raised:  # during the exponents
-        pc.horizon_work(BOOK, CHAOTIC, 0, (0, 10), **options)
+        pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), **options)
     assert len(raised.value.work.points) == 3  # type: ignore[attr-defined]
 
 
@@ -223,15 +220,17 @@ def test_the_interrupt_has_no_run_that_nobody_asked_for() -> None:
 
     scene = BOOK.replace(effects=[E.User(law)])
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.horizon_work(scene, CHAOTIC, 0, (0, 10), rtols=FEW)
+        pc.horizon_work(scene, q0=CHAOTIC, t_span=(0, 10), rtols=FEW)
     assert raised.value.work.points == ()  # type: ignore[attr-defined]
     assert not {"solution", "estimate", "exponents"} & {*vars(raised.value)}
 
 
 def test_one_method_need_not_be_in_a_list() -> None:
-    found = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 2), methods="RK45", rtols=[1e-6])
+    found = pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 2), methods="RK45", rtols=[1e-6])
     assert found.methods == ["dopri5"]
-    twice = pc.horizon_work(BOOK, CHAOTIC, 0, (0, 2), methods=["RK45", "dopri5"], rtols=[1e-6])
+    twice = pc.horizon_work(
+        BOOK, q0=CHAOTIC, t_span=(0, 2), methods=["RK45", "dopri5"], rtols=[1e-6]
+    )
     assert len(twice.points) == 1
 
 
@@ -288,4 +287,4 @@ def test_the_lines_of_the_page_run() -> None:
 def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
     arguments: dict[str, object] = {"t_span": (0, 1), "rtols": [1e-3], **bad}
     with pytest.raises((ValueError, TypeError), match=message):
-        pc.horizon_work(BOOK, CHAOTIC, **arguments)  # type: ignore[arg-type]
+        pc.horizon_work(BOOK, q0=CHAOTIC, **arguments)  # type: ignore[arg-type]

@@ -42,7 +42,7 @@ STANDING = linearised(
 
 
 def test_upright_the_exponents_are_the_roots_of_the_textbook() -> None:
-    found = pc.lyapunov(rods(2), -np.pi / 2, t_span=(0, 2.0), transient=1.5)
+    found = pc.lyapunov(rods(2), q0=-np.pi / 2, t_span=(0, 2.0), transient=1.5)
     assert found.exponents == pytest.approx([FAST, SLOW, -SLOW, -FAST], rel=2e-3)
     roots = np.sort(np.linalg.eigvals(STANDING))[::-1]
     assert roots == pytest.approx([FAST, SLOW, -SLOW, -FAST], rel=1e-12)
@@ -52,7 +52,7 @@ def test_upright_the_exponents_are_the_roots_of_the_textbook() -> None:
 def test_at_an_equilibrium_the_growth_is_that_of_the_matrix_exponential(
     angle: float, sign: int
 ) -> None:
-    found = pc.lyapunov(rods(2), angle, t_span=(0, 0.8), t_eval=[0.2, 0.5, 0.8], rtol=1e-11)
+    found = pc.lyapunov(rods(2), q0=angle, t_span=(0, 0.8), t_eval=[0.2, 0.5, 0.8], rtol=1e-11)
     linear = STANDING.copy()
     linear[2:] *= sign
     for t, growth in zip(found.t[1:], found.growth[1:], strict=True):
@@ -60,7 +60,7 @@ def test_at_an_equilibrium_the_growth_is_that_of_the_matrix_exponential(
 
 
 def test_a_single_pendulum_is_not_chaotic() -> None:
-    found = pc.lyapunov(rods(1), 0.3, t_span=(0, 1000))
+    found = pc.lyapunov(rods(1), q0=0.3, t_span=(0, 1000))
     t = found.t[1:]
     # Neighbours swing with another period and part in proportion to time: ln(1 + c t)/t at most.
     assert (np.abs(found.finite_time[1:, 0]) <= np.log(1 + 10 * t) / t).all()
@@ -68,7 +68,7 @@ def test_a_single_pendulum_is_not_chaotic() -> None:
 
 
 def test_a_small_oscillation_grows_by_nothing() -> None:
-    found = pc.lyapunov(rods(2), [np.pi / 2 + 1e-6, np.pi / 2 - 1e-6], t_span=(0, 200))
+    found = pc.lyapunov(rods(2), q0=[np.pi / 2 + 1e-6, np.pi / 2 - 1e-6], t_span=(0, 200))
     # A change of angle turns into one of rate, FAST times as large in rad/s, and back again.
     assert np.abs(found.growth).max() < np.log(2 * FAST)
     assert np.abs(found.exponents).max() < 0.02
@@ -77,7 +77,7 @@ def test_a_small_oscillation_grows_by_nothing() -> None:
 @pytest.mark.parametrize("n", [2, 3])
 def test_without_losses_the_spectrum_is_symmetric_and_adds_up_to_nothing(n: int) -> None:
     scene = rods(n)
-    found = pc.lyapunov(scene, np.linspace(-2.0, -1.0, n), t_span=(0, 150))
+    found = pc.lyapunov(scene, q0=np.linspace(-2.0, -1.0, n), t_span=(0, 150))
     assert found.largest > 0.5
     # By Liouville det Phi = det M(start)/det M(end) in angles and rates, as momenta are M qd.
     _, log_det = np.linalg.slogdet(scene.mass_matrix(found.q))
@@ -89,14 +89,14 @@ def test_without_losses_the_spectrum_is_symmetric_and_adds_up_to_nothing(n: int)
 
 def test_with_damping_a_single_pendulum_loses_b_over_j() -> None:
     scene = rods(1, E.ViscousJoint(joint=1, damping=0.2))
-    found = pc.lyapunov(scene, 0.3, t_span=(0, 30), rtol=1e-11)
+    found = pc.lyapunov(scene, q0=0.3, t_span=(0, 30), rtol=1e-11)
     assert found.growth.sum(axis=1) == pytest.approx(-0.2 / (1 / 3) * found.t, abs=1e-8)
 
 
 def test_with_damping_the_exponents_add_up_to_it() -> None:
     scene = rods(2, E.ViscousJoint(joint=1, damping=0.05), E.ViscousJoint(joint=2, damping=0.03))
     times = np.linspace(0, 10, 4001)
-    found = pc.lyapunov(scene, [-2.0, -1.0], t_span=(0, 10), t_eval=times, rtol=1e-11)
+    found = pc.lyapunov(scene, q0=[-2.0, -1.0], t_span=(0, 10), t_eval=times, rtol=1e-11)
     damping = np.array([[0.08, -0.03], [-0.03, 0.03]])  # tau = -b phid, on absolute angles
     mass = scene.mass_matrix(found.q)
     loss = np.trace(np.linalg.solve(mass, np.broadcast_to(damping, mass.shape)), axis1=1, axis2=2)
@@ -111,7 +111,7 @@ def growth(case: ChaoticStart, moved: NDArray[np.float64]) -> NDArray[np.float64
     q0, qd0 = np.split(np.array([*case.q0, *case.qd0]) + moved, 2)
     times = np.arange(1, len(case.growth) + 1) / 2
     return pc.lyapunov(
-        case.scene, q0, qd0, (0, T_END), count=1, t_eval=times, rtol=1e-14, atol=1e-16
+        case.scene, q0=q0, qd0=qd0, t_span=(0, T_END), count=1, t_eval=times, rtol=1e-14, atol=1e-16
     ).growth[1:, 0]
 
 
@@ -159,9 +159,9 @@ def differences(scene: pc.Scene, q0: list[float], t: float) -> float:
     """Return the ln of how much longer a change of q_1 has become, from two runs."""
     small = 1e-6
     ends = [
-        pc.simulate(
-            scene, q0=[q0[0] + change, *q0[1:]], qd0=0, t_span=(0, t), rtol=1e-12, atol=1e-14
-        ).y[:, -1]
+        pc.simulate(scene, q0=[q0[0] + change, *q0[1:]], t_span=(0, t), rtol=1e-12, atol=1e-14).y[
+            :, -1
+        ]
         for change in (small, -small)
     ]
     return float(np.log(np.linalg.norm(ends[0] - ends[1]) / (2 * small)))
@@ -192,9 +192,9 @@ def test_under_effects_neighbours_part_at_that_rate(name: str, n: int) -> None:
     if (name, n) == ("user", 3):
         pytest.skip("the law acts on two links")
     scene, q0 = rods(n, *SMOOTH[name]()), [0.3, 1.1, 0.7][:n]
-    found = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11)
+    found = pc.lyapunov(scene, q0=q0, t_span=(0, 2.0), rtol=1e-11)
     assert found.growth[-1, 0] == pytest.approx(differences(scene, q0, 2.0), abs=2e-5)
-    alone = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11, count=1)
+    alone = pc.lyapunov(scene, q0=q0, t_span=(0, 2.0), rtol=1e-11, count=1)
     assert alone.growth.shape == (201, 1)
     assert alone.growth[-1, 0] == pytest.approx(found.growth[-1, 0], abs=1e-7)
 
@@ -210,7 +210,7 @@ DRIVEN = [
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_two_to_four_links_take_one_series_a_step(n: int, effects: list[pc.effects.Effect]) -> None:
     scene, q0 = rods(n, *effects), [0.3, 1.1, 0.7, -0.4][:n]
-    found = pc.lyapunov(scene, q0, t_span=(0, 2.0), rtol=1e-11)
+    found = pc.lyapunov(scene, q0=q0, t_span=(0, 2.0), rtol=1e-11)
     # A step of Runge-Kutta would count as twelve right-hand sides.
     assert found.stats.nfev < 4 * found.stats.accepted
     assert found.growth[-1, 0] == pytest.approx(differences(scene, q0, 2.0), abs=2e-5)
@@ -227,7 +227,7 @@ def test_changes_that_shrink_by_many_powers_of_ten_shrink_at_the_rates_of_the_li
     linear = linearised(-np.linalg.solve(mass, GRAVITY * np.diag([3 / 2, 1 / 2])))
     linear[2:, 2:] = -np.linalg.solve(mass, [[15.0, -3.0], [-3.0, 3.0]])
     rates = np.linalg.eigvals(linear).real
-    found = pc.lyapunov(scene, np.pi / 2, t_span=(0, 10), t_eval=[5.0, 10.0], rtol=1e-11)
+    found = pc.lyapunov(scene, q0=np.pi / 2, t_span=(0, 10), t_eval=[5.0, 10.0], rtol=1e-11)
     # In the first half the changes turn into their directions.
     later = (found.growth[2] - found.growth[1]) / 5
     assert later.sum() == pytest.approx(rates.sum(), abs=1e-6)
@@ -236,20 +236,20 @@ def test_changes_that_shrink_by_many_powers_of_ten_shrink_at_the_rates_of_the_li
 
 
 def test_what_is_locked_has_no_exponents() -> None:
-    locked = pc.lyapunov(rods(2, E.Lock(joint=2)), 0.3, t_span=(0, 20))
+    locked = pc.lyapunov(rods(2, E.Lock(joint=2)), q0=0.3, t_span=(0, 20))
     one = pc.Scene(links=[pc.Link(mass=2.0, length=2.0)], gravity=GRAVITY)
-    assert locked.growth == pytest.approx(pc.lyapunov(one, 0.3, t_span=(0, 20)).growth, abs=1e-7)
+    assert locked.growth == pytest.approx(pc.lyapunov(one, q0=0.3, t_span=(0, 20)).growth, abs=1e-7)
     held = rods(2, E.Lock(joint=1))
-    assert pc.lyapunov(held, [0.2, 0.3], t_span=(0, 1)).exponents.shape == (2,)
+    assert pc.lyapunov(held, q0=[0.2, 0.3], t_span=(0, 1)).exponents.shape == (2,)
     still = rods(2, E.Lock(joint=1), E.Lock(joint=2))
-    none = pc.lyapunov(still, [0.2, 0.3], t_span=(0, 1))
+    none = pc.lyapunov(still, q0=[0.2, 0.3], t_span=(0, 1))
     assert none.exponents.shape == (0,)
     assert np.isnan(none.largest)
     assert none.time == none.seconds_a_digit == np.inf
     with pytest.raises(
         ValueError, match="count = 1: must be left out: nothing of the scene can move"
     ):
-        pc.lyapunov(still, [0.2, 0.3], t_span=(0, 1), count=1)
+        pc.lyapunov(still, q0=[0.2, 0.3], t_span=(0, 1), count=1)
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_effects_that_jump_are_refused_by_name(effect: pc.effects.Effect, name: 
     with pytest.raises(
         ValueError, match=rf"effect 2 \({name}\): motions jump .*: remove dry friction and stops"
     ):
-        pc.lyapunov(scene, [1.0, 1.0], t_span=(0, 1))
+        pc.lyapunov(scene, q0=[1.0, 1.0], t_span=(0, 1))
 
 
 def test_which_effects_jump_is_a_fact_of_theirs_not_of_the_ledger() -> None:
@@ -276,8 +276,8 @@ def test_which_effects_jump_is_a_fact_of_theirs_not_of_the_ledger() -> None:
 
 
 def test_backward_the_spectrum_changes_its_sign() -> None:
-    there = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), count=4)
-    back = pc.lyapunov(rods(2), there.q[-1], there.qd[-1], (5, 0))
+    there = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 5), count=4)
+    back = pc.lyapunov(rods(2), q0=there.q[-1], qd0=there.qd[-1], t_span=(5, 0))
     assert back.q[-1] == pytest.approx([-2.0, -1.0], abs=1e-5)
     assert back.growth[-1].sum() == pytest.approx(-there.growth[-1].sum(), abs=1e-5)
     assert back.growth[-1, 0] > 1.0
@@ -285,8 +285,8 @@ def test_backward_the_spectrum_changes_its_sign() -> None:
 
 def test_growth_counts_from_the_end_of_the_transient() -> None:
     times = [2.0, 3.0, 5.0]
-    whole = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), t_eval=times)
-    later = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5), transient=2.0, t_eval=times[1:])
+    whole = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 5), t_eval=times)
+    later = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 5), transient=2.0, t_eval=times[1:])
     assert whole.t.tolist() == [0.0, *times]
     assert later.t.tolist() == times
     assert later.growth == pytest.approx(whole.growth[1:] - whole.growth[1], abs=1e-12)
@@ -295,10 +295,10 @@ def test_growth_counts_from_the_end_of_the_transient() -> None:
 
 
 def test_exponents_of_a_solution_follow_its_run() -> None:
-    sol = pc.simulate(rods(2), q0=[-2.0, -1.0], qd0=0, t_span=(0, 10), method="dop853")
+    sol = pc.simulate(rods(2), q0=[-2.0, -1.0], t_span=(0, 10), method="dop853")
     found = sol.lyapunov(count=2)
     assert found.growth == pytest.approx(
-        pc.lyapunov(sol.scene, [-2.0, -1.0], 0, (0, 10), count=2).growth, abs=1e-12
+        pc.lyapunov(sol.scene, q0=[-2.0, -1.0], t_span=(0, 10), count=2).growth, abs=1e-12
     )
     assert found.q[20] == pytest.approx(sol(found.t[20])[:2], abs=1e-6)
     assert found.time == 1 / found.largest
@@ -338,12 +338,12 @@ def test_exponents_of_a_solution_follow_its_run() -> None:
 def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:
     arguments: dict[str, object] = {"t_span": (0, 10), **bad}
     with pytest.raises((ValueError, TypeError), match=message):
-        pc.lyapunov(rods(2), [1.0, 1.0], **arguments)  # type: ignore[arg-type]
+        pc.lyapunov(rods(2), q0=[1.0, 1.0], **arguments)  # type: ignore[arg-type]
 
 
 def test_a_run_of_no_length_has_none() -> None:
     with pytest.raises(ValueError, match="lyapunov: the run ended where it began"):
-        pc.simulate(rods(2), q0=[1.0, 1.0], qd0=0, t_span=(2, 2)).lyapunov()
+        pc.simulate(rods(2), q0=[1.0, 1.0], t_span=(2, 2)).lyapunov()
 
 
 def test_what_was_found_so_far_is_not_lost() -> None:
@@ -356,40 +356,42 @@ def test_what_was_found_so_far_is_not_lost() -> None:
 
     times = np.linspace(0, 3000, 30001)
     with pytest.raises(Enough) as raised:
-        pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), t_eval=times, progress=stop)
+        pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 3000), t_eval=times, progress=stop)
     so_far: pc.LyapunovExponents = raised.value.exponents  # type: ignore[attr-defined]
     assert so_far.status == "callback_error"
     assert 100 < len(so_far.t) == len(so_far.growth) < len(times)
     assert so_far.largest > 0.3
     with pytest.warns(pc.PendcoreWarning, match="not those of the whole span: the cap on steps"):
-        limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000)
+        limited = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 3000), max_steps=1000)
     assert (limited.status, limited.success) == ("max_steps", False)
     assert limited.stats.accepted + limited.stats.rejected == 1000
 
 
 def test_printed_they_are_a_sentence() -> None:
-    found = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 50))
+    found = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 50))
     assert str(found) == (
         f"Lyapunov exponents {', '.join(f'{one:.3g}' for one in found.exponents)} 1/s, from "
         f"t = 0 to 50 s: an error grows by e in {1 / found.largest:.3g} s, tenfold in "
         f"{np.log(10) / found.largest:.3g} s"
     )
-    regular = pc.lyapunov(rods(2), [np.pi / 4, np.pi / 3], t_span=(0, 100))
+    regular = pc.lyapunov(rods(2), q0=[np.pi / 4, np.pi / 3], t_span=(0, 100))
     assert str(regular).endswith("; the run is too short to tell this from growth that slows down")
     with pytest.warns(pc.PendcoreWarning, match="whole span"):
-        limited = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 3000), max_steps=1000, transient=1)
+        limited = pc.lyapunov(
+            rods(2), q0=[-2.0, -1.0], t_span=(0, 3000), max_steps=1000, transient=1
+        )
     assert str(limited).endswith(f"; max_steps: {limited.message}")
     assert f"from t = 1 to {limited.t[-1]:.6g} s" in str(limited)
-    many = pc.lyapunov(rods(4), -2.0, t_span=(0, 1))
+    many = pc.lyapunov(rods(4), q0=-2.0, t_span=(0, 1))
     assert f", {many.exponents[5]:.3g}, ... 1/s, from" in str(many)
-    still = pc.lyapunov(rods(1, E.Lock(joint=1)), 0.2, t_span=(0, 1))
+    still = pc.lyapunov(rods(1, E.Lock(joint=1)), q0=0.2, t_span=(0, 1))
     assert str(still) == "no Lyapunov exponents: nothing of the scene can move"
 
 
 def test_the_finite_time_exponents_are_drawn() -> None:
     import matplotlib.pyplot as plt
 
-    found = pc.lyapunov(rods(2), [-2.0, -1.0], t_span=(0, 5))
+    found = pc.lyapunov(rods(2), q0=[-2.0, -1.0], t_span=(0, 5))
     lines = found.plot()
     assert len(lines) == 4
     assert lines[0].get_ydata()[-1] == found.finite_time[-1, 0]

@@ -144,7 +144,7 @@ def test_an_error_between_the_times_that_are_even_is_above(drawn: Drawn) -> None
 def test_a_contradiction_is_seen(drawn: Drawn) -> None:
     def denied(*scene_and_start: Any, **options: Any) -> Any:
         sol = pc.simulate(*scene_and_start, **options)
-        estimate = sol.error()
+        estimate = sol.estimate_error()
         worse = replace(estimate, position=estimate.position + 2e-7)
         return Claiming(sol, error=lambda **_: worse)
 

@@ -90,7 +90,7 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
     run = pc.simulate(
         pc.Scene.textbook(), q0=known.q0, qd0=known.qd0, t_span=(0, 5), rtol=1e-6, atol=1e-9
     )
-    found = run.error()
+    found = run.estimate_error()
     true = np.abs(run(known.t)[:2].T - known.q).max(axis=1)
     near = np.interp(known.t, found.t, found.angle)
     # The estimate is a little above the truth: it includes the times in between and the second
@@ -107,17 +107,17 @@ def test_the_error_over_time_is_what_the_reference_says() -> None:
 def test_printed_it_is_a_sentence() -> None:
     scene = pc.Scene.textbook()
     found = pc.simulate(
-        scene, q0=[1.0, 1.0], qd0=0, t_span=(0, 2), method="dop853", rtol=1e-6
-    ).error()
+        scene, q0=[1.0, 1.0], t_span=(0, 2), method="dop853", rtol=1e-6
+    ).estimate_error()
     assert str(found) == (
         f"error estimated everywhere from t = 0 to 2 s: angles up to {found.angle.max():.1e} "
         f"rad, positions up to {found.position.max():.1e} of the total length, verified by "
         f"taylor at rtol 1e-08 and tighter"
     )
-    lost = pc.simulate(scene, q0=[-2.0, -1.0], qd0=0, t_span=(0, 30), rtol=1e-6).error()
+    lost = pc.simulate(scene, q0=[-2.0, -1.0], t_span=(0, 30), rtol=1e-6).estimate_error()
     assert str(lost).endswith("; past that nothing of it is known any more")
     assert f"to {lost.t[-1]:.6g} s" in str(lost)
-    short = pc.simulate(scene, q0=[1.0, 1.0], qd0=0, t_span=(0, 5000), max_step=0.05).error(
+    short = pc.simulate(scene, q0=[1.0, 1.0], t_span=(0, 5000), max_step=0.05).estimate_error(
         time_limit=0.01
     )
     assert str(short).endswith("; the run goes on past that: it is not known there yet")
@@ -126,7 +126,7 @@ def test_printed_it_is_a_sentence() -> None:
 def test_position_limits_are_shares_of_the_length() -> None:
     case = chaotic_starts()[1]
     run = solved(case, "dopri5", 1e-7)
-    found = run.error()
+    found = run.estimate_error()
     at = run.valid_until(0.05, of="position")
     k = int(np.searchsorted(found.t, at))
     assert found.position[: k + 1].max() <= 0.05
@@ -138,7 +138,7 @@ def test_position_limits_are_shares_of_the_length() -> None:
 
 def test_past_the_horizon_nothing_is_estimated() -> None:
     case = chaotic_starts()[0]
-    found = solved(case, "dopri5", 1e-4).error()
+    found = solved(case, "dopri5", 1e-4).estimate_error()
     assert found.is_lost
     assert found.is_complete
     assert found.t[-1] < T_END
@@ -152,7 +152,7 @@ def test_both_second_runs_together_are_never_fooled_by_one() -> None:
     run = solved(case, "dopri5", 1e-13)
     t, q = times(), np.array(case.q)
     true = np.maximum.accumulate(np.abs(run(t)[: q.shape[1]].T - q).max(axis=1))
-    found = run.error()
+    found = run.estimate_error()
     estimated = np.interp(t, found.t, np.maximum.accumulate(found.angle))
     known = (true > 1e-8) & (true < LIMIT)
     assert known.any()
@@ -161,19 +161,20 @@ def test_both_second_runs_together_are_never_fooled_by_one() -> None:
 
 def test_what_is_kept_decides_at_what_times() -> None:
     scene, start = pc.Scene.textbook(), [-2.0, -1.0]
-    dense = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 20), rtol=1e-6)
+    dense = pc.simulate(scene, q0=start, t_span=(0, 20), rtol=1e-6)
     exact = dense.valid_until(LIMIT)
     assert 1 < exact < 20
-    few = pc.simulate(
-        scene, q0=start, qd0=0, t_span=(0, 20), rtol=1e-6, t_eval=np.arange(0, 20.5, 0.5)
+    few = pc.simulate(scene, q0=start, t_span=(0, 20), rtol=1e-6, t_eval=np.arange(0, 20.5, 0.5))
+    assert (
+        few.estimate_error().t.tolist()
+        == np.arange(0, few.estimate_error().t[-1] + 0.25, 0.5).tolist()
     )
-    assert few.error().t.tolist() == np.arange(0, few.error().t[-1] + 0.25, 0.5).tolist()
     assert exact - 0.5 <= few.valid_until(LIMIT) <= exact + 0.02
-    steps = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 20), rtol=1e-6, store="steps")
+    steps = pc.simulate(scene, q0=start, t_span=(0, 20), rtol=1e-6, store="steps")
     assert steps.valid_until(LIMIT) == pytest.approx(exact, abs=dense.stats.max_step)
-    end = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 20), rtol=1e-6, store="end")
-    assert end.error().t.tolist() == [20.0]
-    short = pc.simulate(scene, q0=start, qd0=0, t_span=(0, 1), rtol=1e-6, store="end")
+    end = pc.simulate(scene, q0=start, t_span=(0, 20), rtol=1e-6, store="end")
+    assert end.estimate_error().t.tolist() == [20.0]
+    short = pc.simulate(scene, q0=start, t_span=(0, 1), rtol=1e-6, store="end")
     assert short.valid_until(LIMIT) == 1.0
 
 
@@ -191,9 +192,9 @@ def test_what_is_kept_decides_at_what_times() -> None:
 def test_scenes_with_jumps_have_an_estimate_too(effects: list[pc.effects.Effect]) -> None:
     links = [pc.Link(mass=1.0, length=1.0)] * 2
     run = pc.simulate(
-        pc.Scene(links=links, effects=effects), q0=[0.5, 0.5], qd0=0, t_span=(0, 2), rtol=1e-7
+        pc.Scene(links=links, effects=effects), q0=[0.5, 0.5], t_span=(0, 2), rtol=1e-7
     )
-    found = run.error()
+    found = run.estimate_error()
     assert found.is_complete
     assert not found.is_lost
     assert 0 < found.angle.max() < 1e-3
@@ -204,26 +205,24 @@ def test_runs_backward_and_of_no_length() -> None:
     case = chaotic_starts()[3]
     back = pc.simulate(case.scene, q0=case.q0, qd0=case.qd0, t_span=(0, -T_END), rtol=1e-6)
     assert -T_END < back.valid_until(LIMIT) < -1
-    assert (np.diff(back.error().t) < 0).all()
+    assert (np.diff(back.estimate_error().t) < 0).all()
     none = pc.simulate(case.scene, q0=case.q0, qd0=case.qd0, t_span=(2, 2))
     assert none.valid_until(LIMIT) == 2.0
 
 
 @pytest.mark.parametrize("kept", [{"store": "end"}, {"t_eval": [90.0, 95.0, 100.0]}])
 def test_a_run_that_is_wrong_at_the_first_time_it_kept_is_trusted_to_its_start(kept):
-    chaotic = pc.simulate(pc.Scene.textbook(), q0=[-1.0, -1.5], qd0=0, t_span=(3, 103), **kept)
+    chaotic = pc.simulate(pc.Scene.textbook(), q0=[-1.0, -1.5], t_span=(3, 103), **kept)
     assert chaotic.valid_until(LIMIT) == 3.0
     with pytest.raises(pc.AccuracyError) as refusal:
-        pc.simulate(
-            pc.Scene.textbook(), q0=[-1.0, -1.5], qd0=0, t_span=(3, 103), error=1e-3, **kept
-        )
+        pc.simulate(pc.Scene.textbook(), q0=[-1.0, -1.5], t_span=(3, 103), error=1e-3, **kept)
     assert refusal.value.solution.accuracy.until == 3.0
 
 
 def test_a_run_that_kept_no_time_says_so():
     scene = pc.Scene.textbook()
     run = pc.simulate(
-        scene, q0=[1.5, 1.6], qd0=0, t_span=(0, 20), t_eval=[10.0, 20.0], max_steps=8, check=False
+        scene, q0=[1.5, 1.6], t_span=(0, 20), t_eval=[10.0, 20.0], max_steps=8, on_failure="ignore"
     )
     with pytest.raises(ValueError, match="error: the run ended before the first of its t_eval"):
         run.valid_until(LIMIT)
@@ -232,27 +231,27 @@ def test_a_run_that_kept_no_time_says_so():
 def test_second_runs_may_take_more_steps_than_the_first_was_allowed():
     how = {"method": "dop853", "rtol": 1e-2, "atol": 1e-5, "store": "end"}
     scene = pc.Scene.textbook()
-    steps = pc.simulate(scene, q0=[1.5, 1.6], qd0=0, t_span=(0, 200), **how).stats
+    steps = pc.simulate(scene, q0=[1.5, 1.6], t_span=(0, 200), **how).stats
     capped = how | {"max_steps": steps.accepted + steps.rejected}
-    run = pc.simulate(scene, q0=[1.5, 1.6], qd0=0, t_span=(0, 200), **capped)
+    run = pc.simulate(scene, q0=[1.5, 1.6], t_span=(0, 200), **capped)
     assert run.success
-    assert run.error().is_complete
+    assert run.estimate_error().is_complete
 
 
 def test_the_second_runs_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 2))
-    first = run.error()
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 2))
+    first = run.estimate_error()
     monkeypatch.setattr("pendcore.accuracy.estimate.error_estimate", None)
-    assert run.error() is first
+    assert run.estimate_error() is first
     assert run.valid_until(0.1) == 2.0
     monkeypatch.undo()
     copied = pickle.loads(pickle.dumps(run))  # the copy is made without the estimate
-    assert copied.error().angle.tolist() == first.angle.tolist()
+    assert copied.estimate_error().angle.tolist() == first.angle.tolist()
 
 
 def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 600), max_step=0.05)
-    some = run.error(time_limit=0.01)
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 600), max_step=0.05)
+    some = run.estimate_error(time_limit=0.01)
     assert not some.is_complete
     assert some.t[-1] < 5000
     assert some.valid_until(LIMIT) <= some.t[-1]
@@ -262,24 +261,28 @@ def test_an_estimate_that_takes_too_long_ends_where_it_is() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as raised:
-        pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 2000), rtol=1e-9).error(
+        pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 2000), rtol=1e-9).estimate_error(
             progress=stop
         )
     assert not raised.value.estimate.is_complete  # type: ignore[attr-defined]
-    assert run.error().is_complete
+    assert run.estimate_error().is_complete
 
 
 def test_without_time_an_estimate_makes_one_leg_of_one_second_run() -> None:
     """Legs shorter than the least time of a leg once went on to the end, whatever the limit."""
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 600), max_step=0.05)
-    some = run.error(time_limit=1e-9)
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 600), max_step=0.05)
+    some = run.estimate_error(time_limit=1e-9)
     assert not some.is_complete
     assert 0 < some.t[-1] < 600 / 16
 
 
 @pytest.mark.parametrize(
     "asked",
-    [lambda run: run.error(), lambda run: run.valid_until(0.1), lambda run: run.plot(horizon=0.1)],
+    [
+        lambda run: run.estimate_error(),
+        lambda run: run.valid_until(0.1),
+        lambda run: run.plot(horizon=0.1),
+    ],
     ids=["error", "valid_until", "plot"],
 )
 def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> None:
@@ -296,7 +299,7 @@ def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> N
         return 0 * q
 
     scene = pc.Scene.textbook().replace(effects=[E.User(law)])
-    run = pc.simulate(scene, q0=[1.0, 1.0], qd0=0, t_span=(0, 2))
+    run = pc.simulate(scene, q0=[1.0, 1.0], t_span=(0, 2))
     for more in (3, 500):  # the interrupt comes at once, or within a second run
         last = calls + more
         with pytest.raises(KeyboardInterrupt) as raised:
@@ -315,7 +318,7 @@ def test_interrupted_it_hands_over_the_users_run_and_none_of_its_own(asked) -> N
     ],
 )
 def test_bad_limits_are_named(bad: dict[str, object], message: str) -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 0.1))
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 0.1))
     with pytest.raises((ValueError, TypeError), match=message):
         run.valid_until(**bad)  # type: ignore[arg-type]
 
@@ -330,11 +333,11 @@ def test_bad_limits_are_named(bad: dict[str, object], message: str) -> None:
     ],
 )
 def test_bad_time_limits_are_named(bad: float, message: str, is_known: bool) -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 0.1))
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 0.1))
     if is_known:
-        run.error()
+        run.estimate_error()
     with pytest.raises((ValueError, TypeError), match=message):
-        run.error(time_limit=bad)
+        run.estimate_error(time_limit=bad)
 
 
 @pytest.mark.parametrize(
@@ -346,7 +349,7 @@ def test_bad_time_limits_are_named(bad: float, message: str, is_known: bool) -> 
     ],
 )
 def test_bad_horizons_are_named(bad: float, message: str) -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 0.1))
+    run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 0.1))
     with pytest.raises((ValueError, TypeError), match=message):
         run.plot(horizon=bad)
 
@@ -360,6 +363,6 @@ def test_what_is_past_the_horizon_is_shaded() -> None:
         (shade,) = line.axes.patches
         assert shade.get_x() == pytest.approx(run.valid_until(LIMIT))
         assert shade.get_x() + shade.get_width() == pytest.approx(T_END)
-    all_right = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], qd0=0, t_span=(0, 1))
+    all_right = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 1))
     assert not all_right.plot(horizon=LIMIT)[0].axes.patches
     plt.close("all")

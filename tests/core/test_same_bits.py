@@ -175,7 +175,7 @@ def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
 @pytest.mark.parametrize("method", ["dopri5", "taylor", "radau5"])
 def test_what_is_stored_or_sampled_changes_no_step(method):
     span, grid = (0.0, 20.0), np.linspace(0.0, 20.0, 777)
-    run = partial(pc.simulate, BOOK, [-1.4, -1.1], 0, span, method=method)
+    run = partial(pc.simulate, BOOK, span, [-1.4, -1.1], method=method)
     dense = run()
     steps = run(store="steps")
     end = run(store="end")
@@ -191,11 +191,9 @@ def test_what_is_stored_or_sampled_changes_no_step(method):
 
 def test_threads_that_share_a_scene_do_not_disturb_each_other():
     starts = [[0.1 * k, 1.0 - 0.2 * k] for k in range(40)]
-    alone = [pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, 20)).y for q0 in starts]
+    alone = [pc.simulate(BOOK, q0=q0, t_span=(0, 20)).y for q0 in starts]
     with ThreadPoolExecutor(8) as pool:
-        together = list(
-            pool.map(lambda q0: pc.simulate(BOOK, q0=q0, qd0=0, t_span=(0, 20)).y, starts)
-        )
+        together = list(pool.map(lambda q0: pc.simulate(BOOK, q0=q0, t_span=(0, 20)).y, starts))
     assert all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
 
 
@@ -208,10 +206,10 @@ def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, sto
     how = {"method": method, "store": store, "step": None if ERROR_ORDERS[method] else 0.01}
     sampled = store == "times"
     whole = pc.simulate(
-        BOOK, q0=[-1.4, -1.1], qd0=0, t_span=(0, 10), t_eval=grid if sampled else None, **how
+        BOOK, q0=[-1.4, -1.1], t_span=(0, 10), t_eval=grid if sampled else None, **how
     )
     begun = pc.simulate(
-        BOOK, q0=[-1.4, -1.1], qd0=0, t_span=(0, stop), t_eval=early if sampled else None, **how
+        BOOK, q0=[-1.4, -1.1], t_span=(0, stop), t_eval=early if sampled else None, **how
     )
     resumed = begun.resume(10, t_eval=late if sampled else None)
     assert np.array_equal(whole.t, resumed.t)

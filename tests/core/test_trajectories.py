@@ -37,7 +37,7 @@ def solve(case: Trajectory, t_end: float, tolerance: float, **options: Any) -> p
     rods = zip(case.masses, case.lengths, strict=True)
     scene = pc.Scene(links=[pc.Link(mass=m, length=L) for m, L in rods], gravity=case.gravity)
     sol = simulate(
-        scene, case.q0, case.qd0, (0.0, t_end), rtol=tolerance, atol=tolerance, **options
+        scene, (0.0, t_end), case.q0, case.qd0, rtol=tolerance, atol=tolerance, **options
     )
     assert sol.success
     return sol
@@ -69,7 +69,7 @@ def test_rates_follow_the_multiple_precision_ones(name: str, reference_case: Ref
 
 
 def test_the_textbooks_program_ends_where_octaves_ode45_does() -> None:
-    sol = simulate(pc.Scene.textbook(), [np.pi / 4, np.pi / 3], 0, (0, 5), rtol=1e-12, atol=1e-12)
+    sol = simulate(pc.Scene.textbook(), (0, 5), [np.pi / 4, np.pi / 3], rtol=1e-12, atol=1e-12)
     octave = [1.08306667066, 0.538460698019, 1.00038020349, 0.393589065863]  # RelTol 1e-10
     np.testing.assert_allclose(sol(5.0), octave, rtol=0, atol=2e-9)
 

@@ -27,7 +27,7 @@ EXTRAS = {
 
 def public() -> Iterator[tuple[str, Any]]:
     """Yield what users may call, with its name."""
-    for module in (pc, pc.draw, pc.effects, pc.events, pc.keep):
+    for module in (pc, pc.sampling, pc.effects, pc.events, pc.reducers):
         for name in module.__all__:
             thing = getattr(module, name)
             if not isinstance(thing, ModuleType) and name != "__version__":

@@ -47,7 +47,7 @@ def test_what_ensembles_keep_has_the_names_of_the_page():
     over = pc.events.LinkAngle(2, 0.0)
     kept = {name: eval(call, {"pc": pc, "event": over}) for call, name in rows}
     assert {type(one) for one in kept.values()} == {
-        getattr(pc.keep, name) for name in pc.keep.__all__ if name != "Reducer"
+        getattr(pc.reducers, name) for name in pc.reducers.__all__ if name != "Reducer"
     }
     for name, reducer in kept.items():
         found = pc.ensemble(pc.Scene.textbook(), q0=[[1.0, 1.0]], t_span=(0, 0.1), keep=reducer)

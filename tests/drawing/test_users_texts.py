@@ -78,13 +78,13 @@ def test_a_figure_shows_its_label(sol: pc.Solution, what: Any, name: str) -> Non
 def test_a_comparison_and_a_map_can_be_drawn_under_any_name(name: str) -> None:
     book = pc.Case.textbook()
     cost = pc.accuracy_cost(
-        book.scene, book.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1, name=name
+        book.scene, q0=book.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1, name=name
     )
     figure = Figure()
     cost.plot(figure.subplots())
     found = pc.ensemble(
         book.scene, q0=np.linspace(0, 1, 4)[:, None] * [1.0, 0.5], t_span=(0, 0.1),
-        keep={name: pc.keep.EnergyDrift()},
+        keep={name: pc.reducers.EnergyDrift()},
     )  # fmt: skip
     found.plot(name, ax=figure.add_subplot())
     figure.draw_without_rendering()

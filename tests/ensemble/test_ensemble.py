@@ -27,7 +27,7 @@ SCENES = {
 
 
 def starts(count, n, seed=1):
-    return pc.draw.uniform(-2.0, 2.0, (count, n), seed=seed)
+    return pc.sampling.uniform(-2.0, 2.0, (count, n), seed=seed)
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
@@ -89,7 +89,7 @@ def test_the_first_event_of_each_member():
     q0 = starts(30, 2, seed=5)
     last = pc.events.LinkAngle(1, np.pi / 2, terminal=3)
     found = pc.ensemble(
-        BOOK, q0=q0, t_span=(0, 10), events=[last], keep={"over": pc.keep.FirstEvent(UPRIGHT)}
+        BOOK, q0=q0, t_span=(0, 10), events=[last], keep={"over": pc.reducers.FirstEvent(UPRIGHT)}
     )
     assert set(found.counts()) == {"event", "finished"}
     over = found["over"]
@@ -105,7 +105,7 @@ def test_the_first_event_of_each_member():
 
 def test_members_fail_alone():
     q0 = np.array([[1.5, 1.5], [np.nan, 1.0], [0.5, 1.0]])
-    short = pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, check=False)
+    short = pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, on_failure="ignore")
     assert short.status.tolist() == ["finished", "refused", "max_steps"]
     assert short.success.tolist() == [True, False, False]
     assert short.failed.tolist() == [[1], [2]]
@@ -113,13 +113,13 @@ def test_members_fail_alone():
     assert "raise max_steps" in short.message(2)
     assert np.isnan(short.q[1]).all()
     assert np.isfinite(short.q[2]).all()
-    again = short.rerun(max_steps=10_000, check=False)
+    again = short.rerun(max_steps=10_000, on_failure="ignore")
     assert again.status.tolist() == ["refused", "finished"]
     assert np.array_equal(again.q[1], pc.simulate(BOOK, q0=q0[2], t_span=(0, 9)).q[-1])
     with pytest.warns(pc.PendcoreWarning, match=r"of 3 members 1 finished, 1 max_steps, 1 refused"):
         pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100)
     with pytest.raises(RuntimeError, match="the first is") as raised:
-        pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, check=True)
+        pc.ensemble(BOOK, q0=q0, t_span=(0, 9), max_steps=100, on_failure="raise")
     assert raised.value.ensemble.success[0]  # type: ignore[attr-defined]
 
 
@@ -130,7 +130,7 @@ def test_a_function_that_raises_ends_its_member_alone():
         return [0.0, 0.0]
 
     scene = BOOK.replace(effects=[E.User(torque)])
-    found = pc.ensemble(scene, q0=[[0.5, 1.0], [1.56, 1.57]], t_span=(0, 0.1), check=False)
+    found = pc.ensemble(scene, q0=[[0.5, 1.0], [1.56, 1.57]], t_span=(0, 0.1), on_failure="ignore")
     assert found.status.tolist() == ["finished", "callback_error"]
 
 
@@ -148,12 +148,12 @@ def test_ctrl_c_and_a_time_limit_keep_what_is_done():
     assert counts["not_run"] > 1000
     done = np.flatnonzero(found.success)[-1]
     assert np.array_equal(found.q[done], pc.simulate(BOOK, q0=q0[done], t_span=(0, 100)).q[-1])
-    limited = pc.ensemble(BOOK, q0=q0, t_span=(0, 100), time_limit=0.2, check=False)
+    limited = pc.ensemble(BOOK, q0=q0, t_span=(0, 100), time_limit=0.2, on_failure="ignore")
     assert limited.ending == "time_limit"
     assert limited.counts()["not_run"] > 1000
 
 
-class OwnReducer(pc.keep.Reducer):
+class OwnReducer(pc.reducers.Reducer):
     usual_name = "own"
     unit = "rad"
 
@@ -179,11 +179,11 @@ class OwnReducer(pc.keep.Reducer):
         ({"rtol": -1.0}, "rtol"),
         ({"max_steps": 0}, "max_steps"),
         ({"keep": "ends"}, 'keep = \'ends\': must be "end", "times"'),
-        ({"keep": pc.keep.Extremes}, r"Extremes'>: call it: must be"),
-        ({"keep": {"a": pc.keep.Extremes}}, r"keep\['a'\] = .*: call it: must be one of pc"),
-        ({"keep": OwnReducer()}, "the core does not know this class: must be one of pc.keep.First"),
-        ({"keep": {"a": 1}}, r"keep\['a'\] = 1: must be one of pc.keep.FirstEvent"),
-        ({"keep": {1: pc.keep.Extremes()}}, r"keep\[1\]: the name must be a text"),
+        ({"keep": pc.reducers.Extremes}, r"Extremes'>: call it: must be"),
+        ({"keep": {"a": pc.reducers.Extremes}}, r"keep\['a'\] = .*: call it: must be one of pc"),
+        ({"keep": OwnReducer()}, "the core does not know this class: must be one of pc.reducers"),
+        ({"keep": {"a": 1}}, r"keep\['a'\] = 1: must be one of pc.reducers.FirstEvent"),
+        ({"keep": {1: pc.reducers.Extremes()}}, r"keep\[1\]: the name must be a text"),
         ({"t_span": (0, np.inf)}, "must be finite"),
     ],
 )  # fmt: skip
@@ -233,25 +233,25 @@ def test_every_parameter_varies_in_the_core_as_in_python():
 
 
 def test_samples_are_functions_of_seed_and_index_alone():
-    for draw in (pc.draw.uniform, pc.draw.normal):
+    for draw in (pc.sampling.uniform, pc.sampling.normal):
         few, many = draw(0.0, 1.0, (3, 2), seed=4), draw(0.0, 1.0, (500, 2), seed=4)
         assert np.array_equal(few, many[:3])
         assert not np.array_equal(few, draw(0.0, 1.0, (3, 2), seed=5))
-    drawn = pc.draw.normal(2.0, 0.5, 100_000, seed=1)
+    drawn = pc.sampling.normal(2.0, 0.5, 100_000, seed=1)
     assert abs(drawn.mean() - 2.0) < 0.01
     assert abs(drawn.std() - 0.5) < 0.01
     assert abs(np.mean(((drawn - 2.0) / 0.5) ** 4) - 3.0) < 0.1
     with pytest.raises(ValueError, match="seed = -1"):
-        pc.draw.uniform(0, 1, 3, seed=-1)
+        pc.sampling.uniform(0, 1, 3, seed=-1)
 
 
 def test_samples_that_cannot_be_drawn():
     with pytest.raises(ValueError, match=r"mean: shape \(2,\): does not broadcast to size = \(10,"):
-        pc.draw.normal([0.0, 1.0], 0.1, (10, 3))
+        pc.sampling.normal([0.0, 1.0], 0.1, (10, 3))
     with pytest.raises(ValueError, match=r"high: shape \(2, 1\): does not broadcast to size"):
-        pc.draw.uniform(0.0, [[1.0], [2.0]], 1)
+        pc.sampling.uniform(0.0, [[1.0], [2.0]], 1)
     with pytest.raises(ValueError, match=r"deviation = -0\.1: must be >= 0"):
-        pc.draw.normal(0.0, [0.2, -0.1], (10, 2))
+        pc.sampling.normal(0.0, [0.2, -0.1], (10, 2))
 
 
 def test_xarray_has_units_and_coordinates():
@@ -276,7 +276,7 @@ def test_starts_in_degrees_are_told_once():
 
 
 def test_one_member_without_axes_is_run_once_more():
-    short = pc.ensemble(BOOK, q0=[1.0, 1.0], t_span=(0, 5), max_steps=3, check=False)
+    short = pc.ensemble(BOOK, q0=[1.0, 1.0], t_span=(0, 5), max_steps=3, on_failure="ignore")
     assert short.rerun(max_steps=1000).status == ["finished"]
 
 
@@ -287,7 +287,7 @@ def test_a_member_that_was_not_run_says_so():
             q0=starts(5, 2),
             t_span=(0, 1),
             time_limit=1e-9,
-            check=False,
+            on_failure="ignore",
             executor=pool,
             chunk=1,
         )

@@ -16,7 +16,7 @@ from pendcore.ensemble.distribution import Task, run_task
 pytestmark = pytest.mark.unsanitized  # processes and a cluster
 
 BOOK = pc.Scene.textbook()
-STARTS = pc.draw.uniform(-2, 2, (40, 2), seed=1)
+STARTS = pc.sampling.uniform(-2, 2, (40, 2), seed=1)
 
 
 def plain(scene=BOOK, **asked):
@@ -36,7 +36,7 @@ def test_an_executor_changes_no_bit(kind, chunk):
 
 def test_effects_and_events_travel_to_processes():
     scene = BOOK.replace(effects=[pc.effects.JointStop(joint=2, range=(-1, 1), restitution=0.5)])
-    asked = {"keep": pc.keep.FirstEvent(pc.events.RateZero(link=1)), "method": "dop853"}
+    asked = {"keep": pc.reducers.FirstEvent(pc.events.RateZero(link=1)), "method": "dop853"}
     with ProcessPoolExecutor(1) as pool:
         found = pc.ensemble(scene, q0=STARTS / 9, t_span=(0, 3), executor=pool, chunk=9, **asked)
     here = pc.ensemble(scene, q0=STARTS / 9, t_span=(0, 3), **asked)
@@ -81,14 +81,20 @@ def test_processes_that_die_are_told():
                 max_steps=10**9,
                 executor=pool,
                 chunk=1,
-                check=False,
+                on_failure="ignore",
             )
 
 
 def test_a_time_limit_ends_the_whole():
     with ThreadPoolExecutor(1) as pool:
         found = pc.ensemble(
-            BOOK, q0=STARTS, t_span=(0, 3000), executor=pool, chunk=1, time_limit=0.05, check=False
+            BOOK,
+            q0=STARTS,
+            t_span=(0, 3000),
+            executor=pool,
+            chunk=1,
+            time_limit=0.05,
+            on_failure="ignore",
         )
     assert found.ending == "time_limit"
     assert found.counts().get("not_run", 0) > 0
@@ -107,7 +113,7 @@ def test_a_cluster_changes_no_bit_and_makes_good_a_worker_that_dies(cluster, tmp
     from test_store import contents
 
     here, there = tmp_path / "here.zarr", tmp_path / "there.zarr"
-    asked = {"t_span": (0, 3000), "chunk": 2, "check": False}
+    asked = {"t_span": (0, 3000), "chunk": 2, "on_failure": "ignore"}
     pc.ensemble(BOOK, q0=STARTS, store=here, **asked)
     killer = threading.Thread(target=kill_a_worker, args=(cluster, there))
     killer.start()

@@ -21,7 +21,7 @@ def assert_same(scene, q0, qd0, t_span, **options):
     With one thread, lanes are full whatever the number of processors.
     """
     options = {"workers": 1} | options
-    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=t_span, check=False, **options)
+    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=t_span, on_failure="ignore", **options)
     evaluations = 0
     q, qd = (np.broadcast_to(x, (*found.shape, len(scene.links))) for x in (q0, qd0))
     for i in np.ndindex(found.shape):
@@ -31,7 +31,7 @@ def assert_same(scene, q0, qd0, t_span, **options):
                 pc.simulate(scene, q0=q[i], qd0=qd[i], t_span=t_span, **options)
             continue
         alone = pc.simulate(
-            scene, q0=q[i], qd0=qd[i], t_span=t_span, check=False, store="end", **options
+            scene, q0=q[i], qd0=qd[i], t_span=t_span, on_failure="ignore", store="end", **options
         )
         evaluations += alone.stats.nfev
         assert found.status[i] == alone.status, i
@@ -44,8 +44,8 @@ def assert_same(scene, q0, qd0, t_span, **options):
 @pytest.mark.parametrize("rtol", [1e-2, 1e-5, 1e-8, 1e-12])
 @pytest.mark.parametrize("method", METHODS)
 def test_starts_over_the_whole_circle(method, rtol):
-    q0 = pc.draw.uniform(-np.pi, np.pi, (41, 2), seed=2)
-    qd0 = pc.draw.uniform(-9.0, 9.0, (41, 2), seed=3)
+    q0 = pc.sampling.uniform(-np.pi, np.pi, (41, 2), seed=2)
+    qd0 = pc.sampling.uniform(-9.0, 9.0, (41, 2), seed=3)
     found = assert_same(BOOK, q0, qd0, (0, 3), method=method, rtol=rtol, atol=rtol / 10)
     assert found.success.all()
 
@@ -60,14 +60,14 @@ def test_starts_over_the_whole_circle(method, rtol):
     ids=lambda options: next(iter(options)),
 )  # fmt: skip
 def test_options_and_a_backward_run(method, options):
-    q0 = pc.draw.uniform(-2.0, 2.0, (13, 2), seed=4)
+    q0 = pc.sampling.uniform(-2.0, 2.0, (13, 2), seed=4)
     for t_span in ((0.0, 2.0), (5.0, 3.5), (1e6, 1e6 + 1)):
         assert_same(BOOK, q0, 0.1, t_span, method=method, **options)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_what_is_odd_beside_what_is_usual(method):
-    q0 = pc.draw.uniform(-2.0, 2.0, (12, 2), seed=5)
+    q0 = pc.sampling.uniform(-2.0, 2.0, (12, 2), seed=5)
     qd0 = np.zeros((12, 2))
     q0[1] = np.nan
     q0[3] = np.pi / 2  # rests
@@ -88,7 +88,7 @@ def test_a_stiff_looking_member_among_others(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_parameters_differ_from_lane_to_lane(method):
-    values = pc.draw.uniform(0.5, 2.0, (11, 3), seed=6)
+    values = pc.sampling.uniform(0.5, 2.0, (11, 3), seed=6)
     vary = {
         name: values[:, k] for k, name in enumerate(["link[1].mass", "link[2].length", "gravity"])
     }
@@ -101,7 +101,7 @@ def test_parameters_differ_from_lane_to_lane(method):
 
 SAME = """
 import hashlib, numpy as np, pendcore as pc
-q0 = pc.draw.uniform(-np.pi, np.pi, (200, 2), seed=7)
+q0 = pc.sampling.uniform(-np.pi, np.pi, (200, 2), seed=7)
 for method in {methods}:
     for rtol in (1e-3, 1e-9):
         found = pc.ensemble(pc.Scene.textbook(), q0, 0.5, (0, 5), method=method, rtol=rtol,
@@ -128,7 +128,7 @@ def test_every_instruction_set_and_number_of_workers_gives_the_same_bits():
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 9])
 def test_few_members_which_finish_alone(count, method):
-    q0 = pc.draw.uniform(-2.0, 2.0, (count, 2), seed=10 + count)
+    q0 = pc.sampling.uniform(-2.0, 2.0, (count, 2), seed=10 + count)
     assert_same(BOOK, q0, 0.3, (0, 3), method=method, rtol=1e-6, max_steps=150)
     assert_same(BOOK, q0, 0.3, (3, 0), method=method, rtol=1e-10)
     gravity = np.linspace(9.0, 10.0, count)
@@ -165,12 +165,18 @@ EVENTS = {
 @pytest.mark.parametrize("name", EVENTS)
 def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
     event = EVENTS[name].replace(terminal=terminal)
-    q0 = pc.draw.uniform(-3.0, 3.0, (23, 2), seed=8)
+    q0 = pc.sampling.uniform(-3.0, 3.0, (23, 2), seed=8)
     q0[3, 0] = 0.4  # begins at a level
     how = {"method": method, "rtol": rtol, "atol": rtol}
     for t_span in ((0, 4), (1e5, 1e5 - 3)):
         found = pc.ensemble(
-            BOOK, q0=q0, qd0=0.25, t_span=t_span, keep=pc.keep.FirstEvent(event), workers=1, **how
+            BOOK,
+            q0=q0,
+            qd0=0.25,
+            t_span=t_span,
+            keep=pc.reducers.FirstEvent(event),
+            workers=1,
+            **how,
         )
         evaluations = 0
         for i, start in enumerate(q0):
@@ -188,10 +194,10 @@ def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
 
 def test_several_events_of_which_one_ends_the_run():
     events = [EVENTS["rate"], EVENTS["joint"].replace(terminal=True)]
-    q0 = pc.draw.uniform(-3.0, 3.0, (23, 2), seed=9)
+    q0 = pc.sampling.uniform(-3.0, 3.0, (23, 2), seed=9)
     keep = {
-        "turns": pc.keep.FirstEvent(EVENTS["turns"]),
-        "rate": pc.keep.FirstEvent(EVENTS["rate"]),
+        "turns": pc.reducers.FirstEvent(EVENTS["turns"]),
+        "rate": pc.reducers.FirstEvent(EVENTS["rate"]),
     }
     found = pc.ensemble(BOOK, q0=q0, t_span=(0, 6), events=events, keep=keep)
     for i, start in enumerate(q0):
@@ -208,11 +214,11 @@ TIP = pc.events.TipLine(point=(0.3, 0.5), normal=(1.0, 0.2))
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor"])
 def test_events_of_members_with_lengths_of_their_own(method):
     """Where the tip is depends on the lengths."""
-    q0 = pc.draw.uniform(-3.0, 3.0, (19, 2), seed=10)
-    length = pc.draw.uniform(0.5, 1.5, 19, seed=11)
+    q0 = pc.sampling.uniform(-3.0, 3.0, (19, 2), seed=10)
+    length = pc.sampling.uniform(0.5, 1.5, 19, seed=11)
     found = pc.ensemble(
         BOOK, q0=q0, t_span=(0, 3), vary={"link[2].length": length}, method=method,
-        keep=pc.keep.FirstEvent(TIP), workers=1,
+        keep=pc.reducers.FirstEvent(TIP), workers=1,
     )  # fmt: skip
     for i, start in enumerate(q0):
         scene = BOOK.replace(links=[BOOK.links[0], BOOK.links[1].replace(length=length[i])])

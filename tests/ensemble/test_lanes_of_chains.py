@@ -52,7 +52,7 @@ def chain(n, effects=()):
 
 
 def starts(count, n, seed, reach):
-    return pc.draw.uniform(-reach, reach, (count, n), seed=seed)
+    return pc.sampling.uniform(-reach, reach, (count, n), seed=seed)
 
 
 def asked(method, rtol):
@@ -158,7 +158,7 @@ VARIED = ["link[1].mass", "link[1].length", "gravity"]
 def test_parameters_of_chains_differ_from_lane_to_lane(n, effects, names):
     scene = chain(n, (OF_ANY_CHAIN | SCENES)[effects])
     names = [*VARIED, *names]
-    values = pc.draw.uniform(0.5, 2.0, (13, len(names)), seed=6)
+    values = pc.sampling.uniform(0.5, 2.0, (13, len(names)), seed=6)
     values[4, 3] = 0.0  # which may give that member other equations, so that it runs alone
     values[7, -1] = 0.0
     vary = {name: values[:, k] for k, name in enumerate(names)}
@@ -176,7 +176,7 @@ def test_first_events_of_chains_are_those_of_simulate(terminal):
     event = pc.events.LinkAngle(3, -np.pi / 2, every_turn=True, terminal=terminal)
     q0 = starts(23, 3, 8, 3.0)
     found = pc.ensemble(
-        scene, q0=q0, t_span=(0, 3), method="taylor", keep=pc.keep.FirstEvent(event), rtol=1e-9
+        scene, q0=q0, t_span=(0, 3), method="taylor", keep=pc.reducers.FirstEvent(event), rtol=1e-9
     )
     for i, start in enumerate(q0):
         alone = pc.simulate(

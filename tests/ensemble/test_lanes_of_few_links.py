@@ -72,7 +72,7 @@ VARIED = {
 def test_parameters_differ_from_lane_to_lane(effects, n, method):
     scene = chain(n, OF_RUNGE_KUTTA[effects])
     names = ["link[1].mass", "link[3].length", "gravity", *VARIED[effects]]
-    values = pc.draw.uniform(0.1, 2.0, (13, len(names)), seed=6)
+    values = pc.sampling.uniform(0.1, 2.0, (13, len(names)), seed=6)
     values[5, 4] = values[7, 5] = 0.0  # which may give these members other equations
     vary = {name: values[:, k] for k, name in enumerate(names)}
     start = np.linspace(0.4, 1.2, n)
@@ -89,7 +89,9 @@ def test_times_and_events_are_those_of_simulate(method):
     event = pc.events.LinkAngle(3, -np.pi / 2, every_turn=True)
     times = np.linspace(0.0, 2.0, 7)
     q0 = starts(23, 3, 8, 3.0)
-    found = pc.ensemble(scene, q0=q0, t_span=(0, 2), method=method, keep=pc.keep.FirstEvent(event))
+    found = pc.ensemble(
+        scene, q0=q0, t_span=(0, 2), method=method, keep=pc.reducers.FirstEvent(event)
+    )
     states = pc.ensemble(scene, q0=q0, t_span=(0, 2), method=method, keep="times", t_eval=times)
     for i, start in enumerate(q0):
         alone = pc.simulate(scene, q0=start, t_span=(0, 2), method=method, events=[event])

@@ -56,8 +56,8 @@ def test_a_link_in_lanes_has_the_bits_of_single_runs(name, rtol):
     scene = one_link(SCENES[name])
     if has_lanes():
         assert scene.explain().lanes == ("dopri5", "dop853")
-    q0 = pc.draw.uniform(-np.pi, np.pi, (21, 1), seed=2)
-    qd0 = pc.draw.uniform(-6.0, 6.0, (21, 1), seed=3)
+    q0 = pc.sampling.uniform(-np.pi, np.pi, (21, 1), seed=2)
+    qd0 = pc.sampling.uniform(-6.0, 6.0, (21, 1), seed=3)
     for method in METHODS:
         same = {"method": method, "rtol": rtol, "atol": rtol / 10}
         assert assert_same(scene, q0, qd0, (0.3, 2.3), **same).success.all()
@@ -69,7 +69,7 @@ def test_a_link_in_lanes_has_the_bits_of_single_runs(name, rtol):
 def test_other_links_run_one_by_one(name):
     scene = one_link(ONE_BY_ONE[name])
     assert scene.explain().lanes == ()
-    q0 = np.full((7, 1), 0.4) if name == "lock" else pc.draw.uniform(-1, 1, (7, 1), seed=2)
+    q0 = np.full((7, 1), 0.4) if name == "lock" else pc.sampling.uniform(-1, 1, (7, 1), seed=2)
     assert_same(scene, q0, 0.0, (0, 1), method="dopri5")
 
 
@@ -78,7 +78,7 @@ def test_parameters_differ_from_lane_to_lane(method):
     """A motor of amplitude 0 has no wave: its member has other equations, and runs alone."""
     scene = one_link(SCENES["four waves, two pivots"])
     names = ["link[1].mass", "gravity", "effect[1].sinusoid.amplitude", "effect[2].y.amplitude"]
-    values = pc.draw.uniform(0.1, 2.0, (13, len(names)), seed=6)
+    values = pc.sampling.uniform(0.1, 2.0, (13, len(names)), seed=6)
     values[5, 2] = values[7, 3] = 0.0
     vary = {name: values[:, k] for k, name in enumerate(names)}
     found = pc.ensemble(scene, q0=0.4, t_span=(0, 3), vary=vary, method=method)

@@ -36,7 +36,7 @@ TIMES = {
 
 
 def starts(count, n):
-    return pc.draw.uniform(-2.5, 2.5, (count, n), seed=5)
+    return pc.sampling.uniform(-2.5, 2.5, (count, n), seed=5)
 
 
 def methods(scene):
@@ -45,12 +45,12 @@ def methods(scene):
 
 
 def assert_same_at_times(scene, q0, t_span, times, **options):
-    how = {"keep": "times", "t_eval": times, "check": False, "workers": 1}
+    how = {"keep": "times", "t_eval": times, "on_failure": "ignore", "workers": 1}
     found = pc.ensemble(scene, q0=q0, qd0=0.3, t_span=t_span, **how, **options)
     evaluations = 0
     for i, start in enumerate(q0):
         alone = pc.simulate(
-            scene, q0=start, qd0=0.3, t_span=t_span, t_eval=times, check=False, **options
+            scene, q0=start, qd0=0.3, t_span=t_span, t_eval=times, on_failure="ignore", **options
         )
         reached = len(alone.t)
         assert found.status[i] == alone.status
@@ -115,7 +115,13 @@ def test_members_that_lanes_leave_to_single_runs(rtol, method):
     qd0[7] = 1e160
     qd0[9] = [1e9, -1e9]
     times = np.linspace(0, 2, 9)
-    asked = {"t_eval": times, "rtol": rtol, "max_steps": 300, "check": False, "method": method}
+    asked = {
+        "t_eval": times,
+        "rtol": rtol,
+        "max_steps": 300,
+        "on_failure": "ignore",
+        "method": method,
+    }
     found = pc.ensemble(BOOK, q0=q0, qd0=qd0, t_span=(0, 2), keep="times", **asked)
     are_cut = method == "dopri5" and rtol == 1e-9  # four more runs, by max_steps
     assert found.counts()["finished"] == (6 if are_cut else 10)

@@ -36,7 +36,9 @@ def empty(path):
 
 def replace(path):
     move(path)
-    pc.ensemble(BOOK, q0=STARTS + 0.1, store=path, chunk=7, time_limit=1e-9, check=False, **ASKED)
+    pc.ensemble(
+        BOOK, q0=STARTS + 0.1, store=path, chunk=7, time_limit=1e-9, on_failure="ignore", **ASKED
+    )
 
 
 def once(done, path):
@@ -63,7 +65,7 @@ def stored(tmp_path_factory):
 def test_a_store_that_goes_while_it_is_written_is_told_and_made_by_nobody(tmp_path, lost, kind):
     path = tmp_path / "folder" / "a.zarr"
     path.parent.mkdir()
-    how = {"store": path, "chunk": 7, "check": False} | ASKED
+    how = {"store": path, "chunk": 7, "on_failure": "ignore"} | ASKED
     with pool_of(kind) as pool, pytest.raises(OSError, match=r"a\.zarr': is no longer there: it w"):
         pc.ensemble(BOOK, q0=STARTS, progress=once(lost, path), executor=pool, **how)
     if lost not in (remove, empty):  # which take their time, in which a worker may write on
@@ -188,7 +190,7 @@ def test_an_array_of_a_store_that_was_moved_is_not_nan(tmp_path, stored):
 
 def test_a_chunk_of_nothing_but_nan_is_written_as_well(tmp_path):
     """A missing file would else mean two things: no event in a whole block, and a lost block."""
-    never = pc.keep.FirstEvent(pc.events.LinkAngle(2, 1e6, every_turn=False))
+    never = pc.reducers.FirstEvent(pc.events.LinkAngle(2, 1e6, every_turn=False))
     path = tmp_path / "a.zarr"
     found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=path, chunk=7, keep=never)
     assert np.isnan(found["first_event"]).all()

@@ -28,7 +28,7 @@ def test_a_map_of_flips(tmp_path, capsys):
         case = pc.read_case(str(found["case"]))
     q0 = np.radians(np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
     event = case.options["events"][0]
-    plain = pc.ensemble(case.scene, q0=q0, t_span=case.t_span, keep=pc.keep.FirstEvent(event))
+    plain = pc.ensemble(case.scene, q0=q0, t_span=case.t_span, keep=pc.reducers.FirstEvent(event))
     assert np.array_equal(values, plain["first_event"], equal_nan=True)
     assert f"resolved: {np.mean(resolved):.2%}" in told
     assert x[0] == -90 + 360 / 32

@@ -18,7 +18,7 @@ SCENES = {
 
 
 def starts(count, n):
-    return pc.draw.uniform(-0.9, 0.9, (count, n), seed=4)
+    return pc.sampling.uniform(-0.9, 0.9, (count, n), seed=4)
 
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
@@ -29,7 +29,7 @@ def test_extremes_are_those_of_the_dense_output(name, method):
         method = "dopri5-radau5"
     q0 = starts(4, len(scene.links))
     asked = {"t_span": (0, 3), "method": method, "rtol": 1e-5}
-    found = pc.ensemble(scene, q0=q0, keep=pc.keep.Extremes(), **asked)
+    found = pc.ensemble(scene, q0=q0, keep=pc.reducers.Extremes(), **asked)
     plain = pc.ensemble(scene, q0=q0, **asked)
     assert np.array_equal(found.q, plain.q)
     for i, start in enumerate(q0):
@@ -45,7 +45,9 @@ def test_extremes_are_those_of_the_dense_output(name, method):
 
 def test_extremes_end_with_the_event_that_ends_the_run():
     top = pc.events.RateZero(link=1, terminal=True)
-    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.keep.Extremes())
+    found = pc.ensemble(
+        BOOK, q0=[0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.reducers.Extremes()
+    )
     assert found.status == "event"
     assert found["extremes"][1, 0] == pytest.approx(float(found.q[0]), abs=1e-12)
 
@@ -55,7 +57,7 @@ def test_the_energy_drift_is_that_of_the_run(name):
     scene = SCENES[name]
     q0 = starts(4, len(scene.links))
     asked = {"t_span": (0, 3), "rtol": 1e-6}
-    found = pc.ensemble(scene, q0=q0, keep=pc.keep.EnergyDrift(), **asked)
+    found = pc.ensemble(scene, q0=q0, keep=pc.reducers.EnergyDrift(), **asked)
     plain = pc.ensemble(scene, q0=q0, **asked)
     assert np.array_equal(found.q, plain.q)
     for i, start in enumerate(q0):
@@ -70,31 +72,35 @@ def test_the_energy_drift_is_that_of_the_run(name):
 def test_the_largest_exponent_is_that_of_lyapunov(name):
     scene = SCENES[name]
     q0 = starts(3, len(scene.links))
-    found = pc.ensemble(scene, q0=q0, t_span=(0, 8), keep=pc.keep.LargestExponent())
+    found = pc.ensemble(scene, q0=q0, t_span=(0, 8), keep=pc.reducers.LargestExponent())
     for i, start in enumerate(q0):
-        alone = pc.lyapunov(scene, start, t_span=(0, 8), count=1, t_eval=[8.0])
+        alone = pc.lyapunov(scene, q0=start, t_span=(0, 8), count=1, t_eval=[8.0])
         assert found["largest_exponent"][i] == alone.largest
     assert np.array_equal(found.q, pc.ensemble(scene, q0=q0, t_span=(0, 8)).q)
 
 
 def test_a_scene_without_exponents_is_refused():
     with pytest.raises(ValueError, match="remove dry friction and stops"):
-        pc.ensemble(SCENES["stop"], q0=[0.1, 0.1], t_span=(0, 1), keep=pc.keep.LargestExponent())
-    with pytest.raises(TypeError, match=r"rtol: must be one number with pc.keep.LargestExponent"):
         pc.ensemble(
-            BOOK, q0=[0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.keep.LargestExponent()
+            SCENES["stop"], q0=[0.1, 0.1], t_span=(0, 1), keep=pc.reducers.LargestExponent()
+        )
+    with pytest.raises(
+        TypeError, match=r"rtol: must be one number with pc.reducers.LargestExponent"
+    ):
+        pc.ensemble(
+            BOOK, q0=[0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.reducers.LargestExponent()
         )
 
 
 @pytest.mark.parametrize("workers", [1, 3])
 def test_several_reducers_at_once(workers):
-    first = pc.keep.FirstEvent(pc.events.RateZero(link=1))
+    first = pc.reducers.FirstEvent(pc.events.RateZero(link=1))
     keep = {
         "first": first,
-        "span": pc.keep.Extremes(),
-        "drift": pc.keep.EnergyDrift(),
-        "again": pc.keep.EnergyDrift(),
-        "second": pc.keep.FirstEvent(pc.events.RateZero(link=2)),
+        "span": pc.reducers.Extremes(),
+        "drift": pc.reducers.EnergyDrift(),
+        "again": pc.reducers.EnergyDrift(),
+        "second": pc.reducers.FirstEvent(pc.events.RateZero(link=2)),
     }
     q0 = starts(6, 2)
     found = pc.ensemble(BOOK, q0=q0, t_span=(0, 3), keep=keep, workers=workers)
@@ -105,9 +111,13 @@ def test_several_reducers_at_once(workers):
 
 
 def test_members_that_were_not_run_have_no_numbers():
-    keep = {"a": pc.keep.Extremes(), "b": pc.keep.EnergyDrift(), "c": pc.keep.LargestExponent()}
+    keep = {
+        "a": pc.reducers.Extremes(),
+        "b": pc.reducers.EnergyDrift(),
+        "c": pc.reducers.LargestExponent(),
+    }
     q0 = [[0.1, 0.2], [np.nan, 0.2]]
-    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 1), keep=keep, check=False)
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 1), keep=keep, on_failure="ignore")
     for name in keep:
         assert np.isfinite(found[name][0]).all()
         assert np.isnan(found[name][1]).all()
@@ -115,7 +125,7 @@ def test_members_that_were_not_run_have_no_numbers():
 
 def test_names_that_are_taken():
     with pytest.raises(ValueError, match=r"keep\[.q.\]: this name is taken"):
-        pc.ensemble(BOOK, q0=[0.1, 0.2], t_span=(0, 1), keep={"q": pc.keep.EnergyDrift()})
+        pc.ensemble(BOOK, q0=[0.1, 0.2], t_span=(0, 1), keep={"q": pc.reducers.EnergyDrift()})
 
 
 IN_LANES = {
@@ -141,14 +151,20 @@ def test_members_in_lanes_have_the_numbers_of_single_members(name, beside, backw
     qd0[3] = 1e160
     qd0[5] = 200.0
     t_span = (1.5, -1.0) if backward else (0, 2)
-    asked = {"t_span": t_span, "rtol": 1e-5, "check": False, "max_steps": 2000, "workers": 1}
-    reducers = {"span": pc.keep.Extremes(), "drift": pc.keep.EnergyDrift()}
+    asked = {
+        "t_span": t_span,
+        "rtol": 1e-5,
+        "on_failure": "ignore",
+        "max_steps": 2000,
+        "workers": 1,
+    }
+    reducers = {"span": pc.reducers.Extremes(), "drift": pc.reducers.EnergyDrift()}
     wanted = [["span"], ["drift"], ["span", "drift"]]
     if beside == "an event":
         asked["events"] = [pc.events.RateZero(link=n, terminal=2)]
-        reducers["first"] = pc.keep.FirstEvent(pc.events.RateZero(link=1))
+        reducers["first"] = pc.reducers.FirstEvent(pc.events.RateZero(link=1))
         wanted.append(["span", "drift", "first"])
-    mass = pc.draw.uniform(0.5, 1.0, 13, seed=12)
+    mass = pc.sampling.uniform(0.5, 1.0, 13, seed=12)
     mass[8] = -1.0
     for method in (*pc._core.methods_with_lanes(scene._compiled), "auto"):
         for names in wanted:

@@ -21,11 +21,11 @@ pytest.importorskip("zarr", exc_type=ImportError)
 
 BOOK = pc.Scene.textbook()
 OVER = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
-STARTS = pc.draw.uniform(-2, 2, (6, 9, 2), seed=1)
+STARTS = pc.sampling.uniform(-2, 2, (6, 9, 2), seed=1)
 ASKED = {
     "t_span": (0, 3),
     "vary": {"gravity": np.linspace(5, 10, 9)},
-    "keep": {"over": pc.keep.FirstEvent(OVER), "extremes": pc.keep.Extremes()},
+    "keep": {"over": pc.reducers.FirstEvent(OVER), "extremes": pc.reducers.Extremes()},
 }
 
 
@@ -133,7 +133,7 @@ def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
 
 KILLED = """
 import numpy as np, pendcore as pc, sys
-starts = pc.draw.uniform(-2, 2, (6, 9, 2), seed=1)
+starts = pc.sampling.uniform(-2, 2, (6, 9, 2), seed=1)
 pc.ensemble(
     pc.Scene.textbook(), starts, t_span=(0, 2000), store=sys.argv[1], chunk=2, workers=1,
     check=False,
@@ -144,7 +144,7 @@ pc.ensemble(
 @pytest.mark.unsanitized
 def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     whole, killed = tmp_path / "whole.zarr", tmp_path / "killed.zarr"
-    pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=whole, chunk=2, check=False)
+    pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=whole, chunk=2, on_failure="ignore")
     process = subprocess.Popen([sys.executable, "-c", KILLED, str(killed)])
     until = time.monotonic() + 60
     while not [*killed.glob("status/c/*")] and time.monotonic() < until:
@@ -152,7 +152,7 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
     (killed / "q" / "c" / "left.partial").write_text("of a write that kill ended")
-    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=killed, check=False)
+    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=killed, on_failure="ignore")
     assert "not_run" not in found.counts()
     assert contents(killed) == contents(whole)
 
@@ -163,7 +163,7 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
         ({"rtol": 1e-6}, "another scene, or other options or events"),
         ({"t_span": (0, 4)}, "another scene, or other options or events"),
         ({"keep": "end"}, "another scene, or other options or events"),
-        ({"keep": {"other": pc.keep.FirstEvent(OVER)}}, "other reducers"),
+        ({"keep": {"other": pc.reducers.FirstEvent(OVER)}}, "other reducers"),
         ({"vary": None}, "other parameters that vary"),
         ({"vary": {"gravity": 9.0}}, "other starts, parameters or times"),
     ],
@@ -227,7 +227,7 @@ def test_a_full_disk_loses_nothing_that_was_written(tmp_path):
     script = f"""
 import resource, signal, numpy as np, pendcore as pc
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-starts = pc.draw.uniform(-2, 2, (64, 2), seed=1)
+starts = pc.sampling.uniform(-2, 2, (64, 2), seed=1)
 how = dict(t_span=(0, 1), store={str(path)!r}, chunk=16)
 def limit(fraction):
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))
@@ -240,7 +240,7 @@ except OSError as error:
     assert "the same call goes on with it" in told
     assert "not_run" in told
     found = pc.ensemble(
-        BOOK, q0=pc.draw.uniform(-2, 2, (64, 2), seed=1), t_span=(0, 1000), store=path
+        BOOK, q0=pc.sampling.uniform(-2, 2, (64, 2), seed=1), t_span=(0, 1000), store=path
     )
     assert found.counts() == {"finished": 64}
 

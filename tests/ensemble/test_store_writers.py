@@ -19,7 +19,7 @@ pytest.importorskip("zarr", exc_type=ImportError)
 
 @pytest.mark.unsanitized
 def test_a_store_that_was_interrupted_is_written_no_more(tmp_path):
-    how = {"t_span": (0, 2000), "store": tmp_path / "a.zarr", "chunk": 2, "check": False}
+    how = {"t_span": (0, 2000), "store": tmp_path / "a.zarr", "chunk": 2, "on_failure": "ignore"}
     with ProcessPoolExecutor(2) as pool:
         with pytest.raises(KeyboardInterrupt):
             pc.ensemble(BOOK, q0=STARTS, executor=pool, progress=stop_early, **how)
@@ -32,7 +32,7 @@ BY_PROCESSES = """
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 import pendcore as pc, sys
-starts = pc.draw.uniform(-2, 2, (6, 9, 2), seed=1)
+starts = pc.sampling.uniform(-2, 2, (6, 9, 2), seed=1)
 with ProcessPoolExecutor(2, mp_context=get_context("fork")) as pool:
     pc.ensemble(
         pc.Scene.textbook(), starts, t_span=(0, 2000), store=sys.argv[1], chunk=2, executor=pool,
@@ -54,7 +54,9 @@ def test_workers_that_outlive_their_run_do_not_hold_its_store(tmp_path):
     process.kill()
     process.wait()
     try:
-        found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 2000), store=path, chunk=2, check=False)
+        found = pc.ensemble(
+            BOOK, q0=STARTS, t_span=(0, 2000), store=path, chunk=2, on_failure="ignore"
+        )
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

@@ -56,7 +56,7 @@ def test_the_second_ensemble_has_another_method_and_other_bits():
 
 
 def test_the_second_ensemble_keeps_series_that_find_events():
-    found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), keep=pc.reducers.FirstEvent(UPRIGHT))
     _, request = second(found.members, found.request)
     assert request.options["method"] == pc.simulate(BOOK, q0=plane(2)[0, 0], t_span=(0, 1)).method
     assert request.options["rtol"] == pytest.approx(0.01 * found.request.options["rtol"])
@@ -66,7 +66,7 @@ def test_the_second_ensemble_keeps_series_that_find_events():
 
 
 def test_events_are_compared_by_their_times():
-    found = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 10), keep=pc.reducers.FirstEvent(UPRIGHT))
     other = found.second()
     times = found["first_event"], other["first_event"]
     assert found.resolved(other).all()
@@ -83,7 +83,7 @@ def test_energy_forbids_what_does_not_happen():
     forbidden = is_forbidden(members_of(BOOK, q0, 0.0, None), UPRIGHT)
     heyl = 3 * np.cos(theta[..., 0]) + np.cos(theta[..., 1]) > 2  # Heyl (2008)
     assert np.array_equal(forbidden, heyl)
-    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), keep=pc.reducers.FirstEvent(UPRIGHT))
     assert np.isnan(found["first_event"][forbidden]).all()
     assert np.isfinite(found["first_event"]).mean() > 0.5
 
@@ -95,10 +95,10 @@ def test_nothing_that_happens_is_called_forbidden(link, value):
     links = [pc.Link(mass=0.7, length=0.4, center=-0.1), *BOOK.links]
     scene = pc.Scene(links=links, gravity=5.0)
     event = pc.events.LinkAngle(link, value, every_turn=True, terminal=True)
-    q0 = pc.draw.uniform(-3, 3, (60, 3), seed=link)
-    qd0 = pc.draw.uniform(-2, 2, (60, 3), seed=link + 9)
+    q0 = pc.sampling.uniform(-3, 3, (60, 3), seed=link)
+    qd0 = pc.sampling.uniform(-2, 2, (60, 3), seed=link + 9)
     forbidden = is_forbidden(members_of(scene, q0, qd0, None), event)
-    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=(0, 10), keep=pc.keep.FirstEvent(event))
+    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=(0, 10), keep=pc.reducers.FirstEvent(event))
     assert not np.isfinite(found["first_event"][forbidden]).any()
 
 
@@ -146,7 +146,7 @@ def test_what_cannot_be_drawn():
 
 
 def test_figures_name_their_axes_and_units():
-    found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), keep=pc.keep.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), keep=pc.reducers.FirstEvent(UPRIGHT))
     [image] = found.plot()
     assert image.axes.get_xlabel() == "q0[1] (rad)"
     assert image.axes.get_ylabel() == "q0[2] (rad)"

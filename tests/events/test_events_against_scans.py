@@ -83,7 +83,9 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(
     ]
     how = {"method": method} | ({"step": step} if step else {"rtol": 1e-5, "atol": 1e-8})
     events = [event for event, _, _ in watched]
-    sol = pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, t_end), events=events, check=False, **how)
+    sol = pc.simulate(
+        scene, q0=q0, qd0=qd0, t_span=(0, t_end), events=events, on_failure="ignore", **how
+    )
     assume(sol.success and np.abs(sol.qd).max() < 50)
     for found, (_, weights, level) in zip(sol.events, watched, strict=True):
         # A start that is on the level but for rounding has no event; the scan would see a crossing.
@@ -111,7 +113,7 @@ def test_the_tip_crosses_where_a_dense_scan_of_it_changes_sign(
     normal = (np.cos(angle), np.sin(angle))
     line = ev.TipLine(point, normal)
     book = pc.Scene.textbook()
-    how = {"method": method, "step": step, "events": [line], "check": False}
+    how = {"method": method, "step": step, "events": [line], "on_failure": "ignore"}
     sol = pc.simulate(book, q0=q0, qd0=qd0, t_span=(0, 2 * sense), **how)
     assume(sol.success and np.abs(sol.qd).max() < 50)  # at such rates steps follow it
     times = np.array([one.t for one in sol.events[0]])

@@ -224,7 +224,7 @@ def test_members_find_the_events_of_the_run_alone_from_an_event(kind: str) -> No
         starts[1:, 0] += 1e-3
         many = pc.ensemble(
             again.scene, q0=starts[:, :n], qd0=starts[:, n:], t_span=(t, t + 0.5), method="dopri5",
-            keep=pc.keep.FirstEvent(event), workers=1,
+            keep=pc.reducers.FirstEvent(event), workers=1,
         )  # fmt: skip
         (found,) = again.events
         first = found[0].t if found else np.nan

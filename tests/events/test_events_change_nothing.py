@@ -225,9 +225,9 @@ def test_an_event_within_the_last_bit_of_the_start(store: str) -> None:
 @pytest.mark.parametrize("cap", [1, 7, 40, 200])
 def test_a_capped_run_keeps_what_it_found_and_finds_the_rest(cap: int) -> None:
     whole = run(events=sections())
-    sol = run(events=sections(), max_steps=cap, check=False)
+    sol = run(events=sections(), max_steps=cap, on_failure="ignore")
     while not sol.success:
-        sol = sol.resume(10.0, max_steps=cap, check=False)
+        sol = sol.resume(10.0, max_steps=cap, on_failure="ignore")
     assert in_numbers(sol) == in_numbers(whole)
 
 
@@ -235,12 +235,12 @@ def test_chaotic_sections_are_counted_alike_whatever_is_kept() -> None:
     """Some thousand crossings over 500 s agree, in one go, in pieces, with and without stops."""
     section = ev.JointAngle(2, 0.0, every_turn=True, direction=1)
     span, start = (0, 500), [-1.4, -1.1]
-    whole = pc.simulate(BOOK, q0=start, qd0=0, t_span=span, store="end", events=[section])
-    pieces = pc.simulate(BOOK, q0=start, qd0=0, t_span=(0, 100), store="steps", events=[section])
+    whole = pc.simulate(BOOK, q0=start, t_span=span, store="end", events=[section])
+    pieces = pc.simulate(BOOK, q0=start, t_span=(0, 100), store="steps", events=[section])
     for t_end in (200, 300.5, 500):
         pieces = pieces.resume(t_end)
     stopping = [section.replace(terminal=100)]
-    stops = pc.simulate(BOOK, q0=start, qd0=0, t_span=span, store="end", events=stopping)
+    stops = pc.simulate(BOOK, q0=start, t_span=span, store="end", events=stopping)
     while stops.status == "event":
         assert len(stops.events[0]) % 100 == 0
         stops = stops.resume(500)

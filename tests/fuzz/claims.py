@@ -132,7 +132,9 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         part = Drawn(drawn.scene, drawn.q0, drawn.qd0, (start, middle), drawn.options).simulate()
     if part.status not in ("finished", "max_steps"):
         return
-    whole = part.resume(end, max_steps=most, time_limit=drawn.options["time_limit"], check=False)
+    whole = part.resume(
+        end, max_steps=most, time_limit=drawn.options["time_limit"], on_failure="ignore"
+    )
     if sol.status in ("max_steps", "max_turns") or "time_limit" in (part.status, whole.status):
         return  # the whole run was given more steps, or turns
     if (whole.status, whole.run.t_reached) != (sol.status, sol.run.t_reached):

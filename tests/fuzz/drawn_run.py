@@ -37,7 +37,7 @@ class Drawn:
         if "method" in options:
             options["method"] = carried(options["method"], self.scene)
         return pc.simulate(
-            self.scene, q0=self.q0, qd0=self.qd0, t_span=self.t_span, check=False, **options
+            self.scene, q0=self.q0, qd0=self.qd0, t_span=self.t_span, on_failure="ignore", **options
         )
 
     def __repr__(self) -> str:

@@ -53,21 +53,24 @@ def whole_solutions() -> list[pc.Solution]:
     moved = pc.Scene(links=[rod, rod, rod], effects=driven)
     locked = pc.Scene(links=[rod, rod], effects=[fx.Lock(2), fx.RodDrag(1, 1.0, 0.1)])
     return [
-        pc.simulate(plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0.2)),
+        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0.2)),
         pc.simulate(
-            plain, q0=[0.3, 1.0], qd0=0, t_span=(0.2, 0), store="steps", max_steps=5, check=False
+            plain, q0=[0.3, 1.0], t_span=(0.2, 0), store="steps", max_steps=5, on_failure="ignore"
         ),
-        pc.simulate(
-            plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True
-        ),
+        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True),
         pc.simulate(moved, q0=[0.3, 1.0, 0.5], qd0=[0, 1.0, 0], t_span=(0, 0.4), ledger=True),
         pc.simulate(
-            moved, q0=[0.3, 1.0, 0.5], qd0=[0, 1.0, 0], t_span=(0, 1.0), max_steps=9, check=False
+            moved,
+            q0=[0.3, 1.0, 0.5],
+            qd0=[0, 1.0, 0],
+            t_span=(0, 1.0),
+            max_steps=9,
+            on_failure="ignore",
         ),
         pc.simulate(
             locked, q0=[0.3, 1.0], qd0=[1.0, 1.0], t_span=(0, 0.3), rtol=[1e-6] * 4, max_step=0.01
         ),
-        pc.simulate(plain, q0=[0.3, 1.0], qd0=0, t_span=(0, 0)),
+        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0)),
         *_hard_solutions(),
     ]
 
@@ -97,7 +100,7 @@ def _hard_solutions() -> list[pc.Solution]:
         solution(damped, method="radau5", compensated=True),
         solution(damped, method="dopri5-radau5", ledger=True),
         pc.simulate(
-            bouncing.replace(effects=[]), q0=[0.3, 1], qd0=0, t_span=(0, 9), events=till_the_second
+            bouncing.replace(effects=[]), q0=[0.3, 1], t_span=(0, 9), events=till_the_second
         ),
     ]
 
@@ -117,11 +120,11 @@ def whole_archives() -> list[bytes]:
 @cache
 def whole_stores() -> list[dict[str, bytes]]:
     """Return stores, as the contents of their files: with reducers, with times, not all run."""
-    scene, starts = pc.Scene.textbook(), pc.draw.uniform(-2, 2, (2, 3, 2), seed=1)
+    scene, starts = pc.Scene.textbook(), pc.sampling.uniform(-2, 2, (2, 3, 2), seed=1)
     over = pc.events.LinkAngle(2, 0.5, every_turn=True)
     asked: list[dict[str, Any]] = [
         {"vary": {"gravity": [5.0, 7.0, 9.0]}, "keep": {
-            "over": pc.keep.FirstEvent(over), "extremes": pc.keep.Extremes()}},
+            "over": pc.reducers.FirstEvent(over), "extremes": pc.reducers.Extremes()}},
         {"keep": "times", "t_eval": [0.1, 0.2], "max_steps": 3},
         {},
     ]  # fmt: skip
@@ -129,7 +132,9 @@ def whole_stores() -> list[dict[str, bytes]]:
     for one in asked:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "a.zarr")
-            pc.ensemble(scene, q0=starts, t_span=(0, 0.2), store=path, chunk=2, check=False, **one)
+            pc.ensemble(
+                scene, q0=starts, t_span=(0, 0.2), store=path, chunk=2, on_failure="ignore", **one
+            )
             files = sorted(file for file in path.rglob("*") if file.is_file())
             found.append({file.relative_to(path).as_posix(): file.read_bytes() for file in files})
     left_out = [name for name in found[-1] if name.startswith("status/c/1/")]
@@ -216,7 +221,7 @@ def a_scene(choices: Choices) -> None:
         gravity = choices.one_of(damage.VALUES)
     found = build(links, gravity, effects)
     q0 = np.linspace(0.1, 0.3, len(found.links))
-    repr(found), use(pc.simulate(found, q0=q0, qd0=0, t_span=(0, 0.1), **STEPS))
+    repr(found), use(pc.simulate(found, q0=q0, t_span=(0, 0.1), **STEPS))
 
 
 def _a_part(choices: Choices, whole: Any) -> Any:

@@ -37,7 +37,7 @@ def test_a_step_of_coarse_tolerances_overflows_nowhere(
     """The new state is finite, but the stages of the dense output overflow, so it is a line."""
     scene = pc.Scene(links=[ROD] * links, gravity=9.807, effects=[law])
     sol = pc.simulate(
-        scene, q0=0.0, qd0=qd0, t_span=(0.0, t_end), max_steps=1000, check=False, **options
+        scene, q0=0.0, qd0=qd0, t_span=(0.0, t_end), max_steps=1000, on_failure="ignore", **options
     )
     assert sol.stats.accepted > 0
     assert np.isfinite(between(sol)).all()
@@ -47,7 +47,9 @@ def test_dense_output_is_finite_under_a_law_of_1e145() -> None:
     """A rate far below atol has a torque whose cube overflows in the stages of dense output."""
     law = fx.ViscousJoint(joint=1, damping=10.0, damping3=4.376330066954931e145)
     scene = pc.Scene(links=[ROD], gravity=9.807, effects=[law])
-    sol = pc.simulate(scene, q0=0.0, t_span=(0.0, 0.19498208047693533), max_steps=3000, check=False)
+    sol = pc.simulate(
+        scene, q0=0.0, t_span=(0.0, 0.19498208047693533), max_steps=3000, on_failure="ignore"
+    )
     assert sol.stats.accepted > 0
     assert np.isfinite(between(sol)).all()
     assert (sol(sol.t) == sol.y).all()
@@ -75,7 +77,7 @@ def test_a_ledger_that_overflows_leaves_the_dense_output_as_it_is() -> None:
     plain, booked = (
         pc.simulate(
             scene, q0=q0, t_span=(0.0, 2.690715162498401), step=1e4, method="rk4", ledger=ledger,
-            check=False,
+            on_failure="ignore",
         )
         for ledger in (False, True)
     )  # fmt: skip
@@ -94,7 +96,12 @@ def test_a_fixed_step_beyond_stability_is_not_said_to_chatter(step: float) -> No
     )
     scene = pc.Scene(links=[ROD] * 3, gravity=9.807, effects=[law])
     sol = pc.simulate(
-        scene, q0=[0.0, 0.0, 0.5], t_span=(-2.5, -1.578), step=step, method="rk4", check=False
+        scene,
+        q0=[0.0, 0.0, 0.5],
+        t_span=(-2.5, -1.578),
+        step=step,
+        method="rk4",
+        on_failure="ignore",
     )
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
@@ -118,7 +125,7 @@ def test_a_coarse_fixed_step_from_the_limit_of_a_motor_is_not_said_to_chatter() 
         ],
     )
     q0 = [0.4982294823897364, 0.0, 1.4740807834029885, 0.0]
-    sol = pc.simulate(scene, q0=q0, t_span=(0.0, -0.281), step=0.02, check=False)
+    sol = pc.simulate(scene, q0=q0, t_span=(0.0, -0.281), step=0.02, on_failure="ignore")
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
 
@@ -134,7 +141,7 @@ def test_a_coarse_fixed_step_from_next_to_rest_is_not_said_to_chatter() -> None:
         t_span=(0.0, 3.49),
         step=35.0,
         max_steps=10,
-        check=False,
+        on_failure="ignore",
     )
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message
@@ -154,7 +161,7 @@ def test_a_coarse_fixed_step_from_a_stop_is_not_said_to_chatter() -> None:
         t_span=(0.0, 4.291248774290121),
         method="rk4",
         step=6.847012340570351,
-        check=False,
+        on_failure="ignore",
     )
     assert sol.stats.accepted > 0
     assert "back and forth" not in sol.message

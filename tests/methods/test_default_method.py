@@ -40,7 +40,7 @@ CLIPPED = fx.Motor(joint=2, pd=fx.PD(kp=1e7, kd=1e5, reference=0.5), limit=30.0)
 def default(scene: pc.Scene, t_end: float = 0.1, **how: Any) -> pc.Solution:
     n = len(scene.links)
     return pc.simulate(
-        scene, q0=START[0] if n == 1 else np.linspace(*START, n), qd0=0, t_span=(0, t_end), **how
+        scene, q0=START[0] if n == 1 else np.linspace(*START, n), t_span=(0, t_end), **how
     )
 
 
@@ -95,7 +95,7 @@ def test_neither_start_nor_end_has_a_say() -> None:
     begins = [(START, (0, 1e-3)), ([3.0, -3.0], (0, 0)), ([0.0, 0.0], (5, 4))]
     scene = with_(DAMPER)
     runs = [
-        pc.simulate(scene, q0=q0, qd0=[1e3, 0], t_span=t_span, max_steps=100, check=False)
+        pc.simulate(scene, q0=q0, qd0=[1e3, 0], t_span=t_span, max_steps=100, on_failure="ignore")
         for q0, t_span in begins
     ]
     assert {run.method for run in runs} == {"taylor-radau5"}
@@ -129,18 +129,18 @@ def test_what_ran_goes_on_and_runs_again_without_the_rule(scene: pc.Scene) -> No
     ids=["damper", "damper and drag", "held", "pulled", "rubbed", "clipped at the start"],
 )
 def test_stiff_scenes_are_flagged_in_bounded_work(effects: list[Any], q0: list[float]) -> None:
-    sol = pc.simulate(with_(*effects), q0=q0, qd0=0, t_span=(0, 5), max_steps=30_000)
+    sol = pc.simulate(with_(*effects), q0=q0, t_span=(0, 5), max_steps=30_000)
     assert sol.success, sol.message
     assert sol.stats.stiff
     assert sol.stats.njev > 0
     assert "stiff: went on with radau5 from t = " in sol.message
-    exact = pc.simulate(with_(*effects), q0=q0, qd0=0, t_span=(0, 5), method="radau5", rtol=1e-11)
+    exact = pc.simulate(with_(*effects), q0=q0, t_span=(0, 5), method="radau5", rtol=1e-11)
     assert np.abs(sol.y[:2, -1] - exact.y[:2, -1]).max() < 1e-6
 
 
 def test_tolerances_have_no_say_in_a_fixed_step() -> None:
     loose, tight = (
-        pc.simulate(with_(DRAG), q0=START, qd0=0, t_span=(0, 1), step=1e-2, rtol=rtol)
+        pc.simulate(with_(DRAG), q0=START, t_span=(0, 1), step=1e-2, rtol=rtol)
         for rtol in (1e-3, 1e-12)
     )
     assert np.array_equal(loose.y, tight.y)
@@ -148,14 +148,14 @@ def test_tolerances_have_no_say_in_a_fixed_step() -> None:
 
 
 def test_a_fixed_step_that_is_too_long_is_told_so() -> None:
-    sol = pc.simulate(with_(DAMPER), q0=START, qd0=0, t_span=(0, 5), step=1e-2, check=False)
+    sol = pc.simulate(with_(DAMPER), q0=START, t_span=(0, 5), step=1e-2, on_failure="ignore")
     assert sol.status == "non_finite"
     assert 'a shorter one helps, or method="radau5"' in sol.message
 
 
 def test_in_fixed_steps_a_pair_changes_over_where_it_is_named_and_the_default_does_not() -> None:
     scene = with_(fx.ViscousJoint(joint=2, damping=1e3))
-    run = (START, 0, (0, 0.5))
+    run = ((0, 0.5), START)
     named = pc.simulate(scene, *run, step=2.5e-4, method="dopri5-radau5")
     unnamed = pc.simulate(scene, *run, step=2.5e-4)
     assert "went on with radau5" in named.message
@@ -170,7 +170,7 @@ def test_the_default_stays_with_its_first_method_where_radau5_does_not_pay() -> 
     """A mode of 5e3 1/s that settles, beside a spring whose swing the steps have to follow."""
     spring = fx.TorsionalSpring(joint=4, stiffness=2000.0, rest_angle=0.3)
     scene = chain(4, spring, fx.ViscousJoint(joint=2, damping=280.0))
-    run = ([0.9, 1.0, 1.1, 1.2], 0, (0, 5))
+    run = ((0, 5), [0.9, 1.0, 1.1, 1.2])
     unnamed, by_name = (pc.simulate(scene, *run, **how) for how in ({}, {"method": "taylor"}))
     assert unnamed.stats.stiff
     assert by_name.stats.stiff
@@ -182,15 +182,15 @@ def test_the_default_stays_with_its_first_method_where_radau5_does_not_pay() -> 
 def test_a_run_that_is_about_to_ask_goes_on_bit_by_bit() -> None:
     spring = fx.TorsionalSpring(joint=4, stiffness=2000.0, rest_angle=0.3)
     scene = chain(4, spring, fx.ViscousJoint(joint=2, damping=280.0))
-    run = ([0.9, 1.0, 1.1, 1.2], 0, (0, 5))
+    run = ((0, 5), [0.9, 1.0, 1.1, 1.2])
     whole = pc.simulate(scene, *run)
     assert whole.stats.njev > 0
     found = 1
-    while not pc.simulate(scene, *run, max_steps=found, check=False).stats.stiff:
+    while not pc.simulate(scene, *run, max_steps=found, on_failure="ignore").stats.stiff:
         found += 1
     asked = []
     for cap in range(found - 1, found + 3):
-        begun = pc.simulate(scene, *run, max_steps=cap, check=False)
+        begun = pc.simulate(scene, *run, max_steps=cap, on_failure="ignore")
         asked.append(begun.stats.stiff and begun.stats.njev == 0)
         resumed = pickle.loads(pickle.dumps(begun)).resume(5)
         assert np.array_equal(whole.y, resumed.y)
@@ -202,7 +202,7 @@ def test_a_run_that_is_about_to_ask_goes_on_bit_by_bit() -> None:
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
 def test_a_swing_that_every_method_has_to_follow_is_not_stiff(method: str) -> None:
     spring = fx.TorsionalSpring(joint=2, stiffness=1e5, rest_angle=0.2)
-    sol = pc.simulate(with_(spring), q0=[0.8, 1.1], qd0=0, t_span=(0, 20), method=method)
+    sol = pc.simulate(with_(spring), q0=[0.8, 1.1], t_span=(0, 20), method=method)
     assert sol.stats.accepted > 3000
     assert not sol.stats.stiff
     assert "a fast mode set" in sol.message

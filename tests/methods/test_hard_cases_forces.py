@@ -44,7 +44,7 @@ def test_what_is_no_number_beyond_a_time_or_an_angle_ends_there(at: float) -> No
             return 0 * np.sqrt(np.array([at - t]))
 
     for law in (by_angle, by_time):
-        sol = pc.simulate(rod(fx.User(law)), q0=0, qd0=1, t_span=(0, 5), check=False)
+        sol = pc.simulate(rod(fx.User(law)), q0=0, qd0=1, t_span=(0, 5), on_failure="ignore")
         assert sol.status == "non_finite"
         np.testing.assert_allclose(sol.y[:, -1], [sol.t[-1], 1], rtol=1e-9)
         assert sol.t[-1] == pytest.approx(at, abs=1e-6)
@@ -83,7 +83,7 @@ def test_a_stiff_damper_is_flagged_in_bounded_work(damping: float) -> None:
     """Joint 2 damped by up to 1e8 times a second: flagged within 10,000 steps."""
     scene = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=damping)])
     start = [np.pi / 4, np.pi / 3]
-    how = {"max_steps": 10_000, "store": "steps", "check": False}
+    how = {"max_steps": 10_000, "store": "steps", "on_failure": "ignore"}
     sol = pc.simulate(scene, q0=start, t_span=(0, 5), method="dopri5", **how)
     assert sol.status == "max_steps"
     assert sol.stats.stiff
@@ -105,7 +105,7 @@ def test_a_stiff_servo_ends_at_the_limit_of_steps_or_gets_there(effect: Any) -> 
     start = [np.pi / 4, np.pi / 3]
     stiff = BOOK.replace(effects=[effect])
     sol = pc.simulate(
-        stiff, q0=start, t_span=(0, 0.5), max_steps=400_000, store="steps", check=False
+        stiff, q0=start, t_span=(0, 0.5), max_steps=400_000, store="steps", on_failure="ignore"
     )
     assert sol.status in {"finished", "max_steps"}
     bent = pc.simulate(BOOK.replace(effects=[fx.Lock(joint=2)]), q0=start, t_span=(0, 0.5))
@@ -153,7 +153,7 @@ def test_what_a_fixed_step_keeps_is_finite_between_its_ends_as_well(
         )
         sol = pc.simulate(
             scene, q0=0.4, qd0=1.0, t_span=(0, 30), method=method, step=0.3, rtol=rtol, atol=rtol,
-            t_eval=np.linspace(0, 30, 301), check=False,
+            t_eval=np.linspace(0, 30, 301), on_failure="ignore",
         )  # fmt: skip
         ends.add(sol.status)
         assert np.isfinite(sol.y).all(), (sol.status, sol.message)

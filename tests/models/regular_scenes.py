@@ -35,7 +35,7 @@ class Regular:
 
     @property
     def times(self) -> np.ndarray:
-        return time_grid(*self.arguments[3])
+        return time_grid(*self.arguments[1])
 
     def run(self, **options: Any) -> pc.Solution:
         return pc.simulate(*self.arguments, t_eval=self.times, **options)
@@ -66,7 +66,7 @@ def regular(seed: int) -> Regular:
     draft = Regular(arguments, error, known, [])
     for method in METHODS:
         for rtol in TOLERANCES:
-            solution = draft.run(method=method, rtol=rtol, atol=rtol / 1000, check=False)
+            solution = draft.run(method=method, rtol=rtol, atol=rtol / 1000, on_failure="ignore")
             if solution.success:
                 each = series_work(arguments[0], rtol) if method == "taylor" else 1.0
                 work = each * solution.stats.nfev
@@ -75,7 +75,7 @@ def regular(seed: int) -> Regular:
     return draft
 
 
-def growth(scene: pc.Scene, q0: np.ndarray, qd0: np.ndarray, span: tuple[float, float]) -> float:
+def growth(scene: pc.Scene, span: tuple[float, float], q0: np.ndarray, qd0: np.ndarray) -> float:
     """Return by how much neighbours part."""
     options = {"method": "dop853", "rtol": 1e-12, "atol": 1e-14, "t_eval": time_grid(*span)}
     one, other = (
@@ -97,7 +97,7 @@ def scene_and_start(rng: np.random.Generator) -> tuple[Any, ...]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)
         scene = pc.Scene(links=links, effects=effects.values())
-    return scene, q0, qd0, (0.0, float(np.exp(rng.uniform(0, np.log(30)))))
+    return scene, (0.0, float(np.exp(rng.uniform(0, np.log(30))))), q0, qd0
 
 
 def link(rng: np.random.Generator) -> pc.Link:

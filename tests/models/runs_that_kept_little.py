@@ -24,7 +24,11 @@ BOTTOM = pc.events.LinkAngle(1, np.pi / 2, terminal=True)
 
 
 def simulate(scene: pc.Scene, **options: Any) -> pc.Solution:
-    start = {"q0": [1.8, 2.5] if len(scene.links) == 2 else 0.3, "t_span": (0, 10), "check": False}
+    start = {
+        "q0": [1.8, 2.5] if len(scene.links) == 2 else 0.3,
+        "t_span": (0, 10),
+        "on_failure": "ignore",
+    }
     return pc.simulate(scene, **(start | options))
 
 
@@ -41,7 +45,9 @@ def loaded(run: pc.Solution, folder: Path) -> Any:
 
 def member(**options: Any) -> pc.Solution:
     starts = np.array([[1.8, 2.5], [1.9, 2.5]])
-    return pc.ensemble(TEXTBOOK, q0=starts, t_span=(0, 10), check=False, **options).member(0)
+    return pc.ensemble(TEXTBOOK, q0=starts, t_span=(0, 10), on_failure="ignore", **options).member(
+        0
+    )
 
 
 RUNS: dict[str, tuple[Callable[[Path], pc.Solution], Callable[[], pc.Solution]]] = {
@@ -80,8 +86,8 @@ RUNS: dict[str, tuple[Callable[[Path], pc.Solution], Callable[[], pc.Solution]]]
         lambda: simulate(BOUNCING, max_steps=40),
     ),
     "resumed after a break": (
-        lambda _: few(BOUNCING, max_steps=40).resume(10.0, max_steps=30, check=False),
-        lambda: simulate(BOUNCING, max_steps=40).resume(10.0, max_steps=30, check=False),
+        lambda _: few(BOUNCING, max_steps=40).resume(10.0, max_steps=30, on_failure="ignore"),
+        lambda: simulate(BOUNCING, max_steps=40).resume(10.0, max_steps=30, on_failure="ignore"),
     ),
     "broken off before its first step": (
         lambda _: simulate(TEXTBOOK, t_eval=[3.0, 4.0], time_limit=1e-9),

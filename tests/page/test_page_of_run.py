@@ -58,7 +58,7 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     start = STARTS.get(name, START)
     run = pc.simulate(
         scene_in_python(effects), q0=start["q0"], qd0=start["qd0"],
-        t_span=(start["t0"], start["t_end"]), check=False, **options,
+        t_span=(start["t0"], start["t_end"]), on_failure="ignore", **options,
     )  # fmt: skip
     page = opened(run)
     told = page.text("bits")
@@ -66,7 +66,7 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     states = np.array(page.ask("[1.7, 3.9].map((t) => [...pendcorePage.run.state(t)])"))
     assert np.array_equal(states, pc.simulate(
         run.scene, q0=start["q0"], qd0=start["qd0"], t_span=(start["t0"], start["t_end"]),
-        check=False, **options,
+        on_failure="ignore", **options,
     )([1.7, 3.9]).T)  # fmt: skip
 
 
@@ -174,7 +174,7 @@ def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> Non
     feeds = pc.effects.ViscousJoint(joint=2, damping=0.0, damping3=-50.0)
     with pytest.warns(pc.PendcoreWarning, match="feeds energy"):
         wild = pc.Scene.textbook().replace(effects=[feeds])
-    blown = pc.simulate(wild, q0=[0.8, 1.0], qd0=[0, 5], t_span=(0, 4), check=False)
+    blown = pc.simulate(wild, q0=[0.8, 1.0], qd0=[0, 5], t_span=(0, 4), on_failure="ignore")
     assert not blown.success
     assert opened(blown).text("message") == blown.message
     stuck = pc.Scene.textbook().replace(

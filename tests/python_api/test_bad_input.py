@@ -165,21 +165,14 @@ def test_a_value_out_of_range_is_told_with_the_range(case):
         simulate(**changes)
 
 
-def test_a_scene_alone_is_told_what_is_missing():
-    with pytest.raises(TypeError, match=r"^q0 is missing: give"):
-        pc.simulate(pc.Scene.textbook())
-    with pytest.raises(TypeError, match=r"^t_span is missing: write"):
-        pc.simulate(pc.Scene.textbook(), q0=1)
-
-
 def test_whoever_simulates_a_case_is_told_how():
     with pytest.raises(TypeError, match=r"^scene: is a Case: .*case\.simulate\(\)"):
-        pc.simulate(pc.Case.textbook())
+        pc.simulate(pc.Case.textbook(), (0, 1), 0.5)
 
 
 def test_the_scene_is_looked_at_first():
     with pytest.raises(TypeError, match=r"^scene = 5: must be a pendcore\.Scene"):
-        pc.simulate(5, t_span=5)
+        pc.simulate(5, 5, 0.5)
 
 
 @pytest.mark.parametrize("size", [400, 5000])

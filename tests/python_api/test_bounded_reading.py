@@ -228,7 +228,7 @@ def test_an_archive_that_was_compressed_is_read(saved: Path, tmp_path: Path) -> 
 
 def test_arrays_in_fortran_order_are_read_in_their_order(tmp_path: Path) -> None:
     found = pc.ensemble(
-        pc.Scene.textbook(), q0=pc.draw.uniform(-1, 1, (3, 2, 2), seed=1), t_span=(0, 1)
+        pc.Scene.textbook(), q0=pc.sampling.uniform(-1, 1, (3, 2, 2), seed=1), t_span=(0, 1)
     )
     found.save(tmp_path / "all.npz")
     with np.load(tmp_path / "all.npz") as entries:

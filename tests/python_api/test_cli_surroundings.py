@@ -119,7 +119,7 @@ def test_second_runs_that_fail_take_nothing_from_the_first(monkeypatch: pytest.M
     def fail(*_: Any, **__: Any) -> None:
         raise MemoryError("no memory for a second run")
 
-    monkeypatch.setattr(pc.Solution, "error", fail)
+    monkeypatch.setattr(pc.Solution, "estimate_error", fail)
     assert main(["run", "-o", "o"]) == 0
     assert "not known: no memory for a second run" in Path("o/summary.txt").read_text()
     assert pc.load("o/solution.npz").success

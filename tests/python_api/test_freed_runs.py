@@ -94,7 +94,7 @@ def of_a_case() -> None:
 
 
 def of_its_error() -> None:
-    pc.simulate(BOOK, q0=[0.5, 0.5], t_span=(0, 2000)).error(progress=show)
+    pc.simulate(BOOK, q0=[0.5, 0.5], t_span=(0, 2000)).estimate_error(progress=show)
 
 
 def members(**options: Any) -> None:
@@ -114,17 +114,17 @@ def by_threads() -> None:
 
 
 def members_with_check() -> None:
-    pc.ensemble(BOOK, q0=np.zeros((4, 2)), t_span=(0, 1), max_steps=2, check=True)
+    pc.ensemble(BOOK, q0=np.zeros((4, 2)), t_span=(0, 1), max_steps=2, on_failure="raise")
 
 
 def with_check() -> None:
-    pc.simulate(BOOK, **HERE, max_steps=50, check=True)
+    pc.simulate(BOOK, **HERE, max_steps=50, on_failure="raise")
 
 
 OTHERS: dict[str, Callable[[], object]] = {
     "resume": resumed, "resume by event": resumed_by_event, "error=": for_an_error,
     "error= by progress": lambda: by_progress(error=1e-6), "case": of_a_case,
-    "lyapunov": lambda: pc.lyapunov(BOOK, [0.5, 0.5], t_span=(0, 1e6), progress=show),
+    "lyapunov": lambda: pc.lyapunov(BOOK, q0=[0.5, 0.5], t_span=(0, 1e6), progress=show),
     "sol.error": of_its_error, "ensemble": members, "ensemble in blocks": in_blocks,
     "ensemble by threads": by_threads, "ensemble with check": members_with_check,
     "check": with_check,
@@ -235,13 +235,13 @@ MADE: dict[str, Callable[[Rig], Any]] = {
     "run with both": lambda rig: pc.simulate(rig.scene(), **START, events=rig.events()),
     "run resumed": lambda rig: pc.simulate(rig.scene(), **START, events=rig.events()).resume(2),
     "run for an error": lambda rig: pc.simulate(rig.scene(), **START, error=1e-6),
-    "error": lambda rig: pc.simulate(rig.scene(), **START).error(),
+    "error": lambda rig: pc.simulate(rig.scene(), **START).estimate_error(),
     "case": lambda rig: pc.Case(scene=rig.scene(), **START, options={"events": rig.events()}),
     "ensemble": lambda rig: pc.ensemble(rig.scene(), q0=[[0.3, 0.4]] * 3, t_span=(0, 1)),
     "ensemble with events": lambda rig: pc.ensemble(
-        BOOK, q0=[[0.3, 0.4]] * 3, t_span=(0, 1), keep=pc.keep.FirstEvent(*rig.events())
+        BOOK, q0=[[0.3, 0.4]] * 3, t_span=(0, 1), keep=pc.reducers.FirstEvent(*rig.events())
     ),
-    "exponents": lambda rig: pc.lyapunov(rig.scene(), [0.3, 0.4], t_span=(0, 1)),
+    "exponents": lambda rig: pc.lyapunov(rig.scene(), q0=[0.3, 0.4], t_span=(0, 1)),
 }  # fmt: skip
 
 

@@ -29,10 +29,10 @@ DOORS: dict[str, Callable[[pc.Solution, Path], object]] = {
     "names in an animation": lambda sol, path: sol.animate(names=(HALF,)),
     "label in a figure": lambda sol, path: sol.plot(label=HALF),
     "name of a comparison": lambda sol, path: pc.accuracy_cost(
-        BOOK.scene, BOOK.q0, t_span=(0, 0.1), methods="dopri5", name=HALF
+        BOOK.scene, q0=BOOK.q0, t_span=(0, 0.1), methods="dopri5", name=HALF
     ),
     "name of a reducer": lambda sol, path: pc.ensemble(
-        BOOK.scene, q0=[BOOK.q0], t_span=(0, 0.1), keep={HALF: pc.keep.EnergyDrift()}
+        BOOK.scene, q0=[BOOK.q0], t_span=(0, 0.1), keep={HALF: pc.reducers.EnergyDrift()}
     ),
 }
 

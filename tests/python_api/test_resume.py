@@ -14,7 +14,7 @@ Q0 = [0.8, 1.0]
 
 
 def begun(t_end=5.0, **options):
-    return pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, t_end), **options)
+    return pc.simulate(BOOK, q0=Q0, t_span=(0, t_end), **options)
 
 
 def test_a_run_that_goes_back_in_time_goes_on_to_earlier_times() -> None:
@@ -24,7 +24,7 @@ def test_a_run_that_goes_back_in_time_goes_on_to_earlier_times() -> None:
         back.resume(2.5)
     with pytest.raises(ValueError, match=rf"^t_eval\[0\] = 2\.0: must be before .* 2\.0 {way}"):
         back.resume(1.0, [2.0, 1.5])
-    later = pc.simulate(BOOK, q0=0.5, t_span=(3, 1), t_eval=[1.5], max_steps=2, check=False)
+    later = pc.simulate(BOOK, q0=0.5, t_span=(3, 1), t_eval=[1.5], max_steps=2, on_failure="ignore")
     with pytest.raises(ValueError, match=rf"^t_end = 1\.75: .* at or before .* 1\.5 {way}"):
         later.resume(1.75)
     assert back.resume(1.0, [1.5]).t[-1] == 1.5
@@ -94,7 +94,7 @@ def test_a_run_that_was_not_sampled_is_not_sampled_on(store):
 
 
 def test_an_end_before_the_times_asked_for_is_refused():
-    capped = begun(t_eval=[1, 2, 3, 4, 5], max_steps=30, check=False)
+    capped = begun(t_eval=[1, 2, 3, 4, 5], max_steps=30, on_failure="ignore")
     assert capped.status == "max_steps"
     with pytest.raises(ValueError, match=r"^t_end = 3\.0: must be at or beyond the last time"):
         capped.resume(3)
@@ -104,24 +104,24 @@ def test_an_end_before_the_times_asked_for_is_refused():
 def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
     """The first attempt would go beyond the end, on which the run depends: it is made anew."""
     how = {"method": "dopri5", "first_step": 2.0}
-    few = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 1), max_steps=8, check=False, **how)
-    whole = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 1), **how)
+    few = pc.simulate(BOOK, q0=Q0, t_span=(0, 1), max_steps=8, on_failure="ignore", **how)
+    whole = pc.simulate(BOOK, q0=Q0, t_span=(0, 1), **how)
     assert np.array_equal(few.resume(1).y, whole.y)
     attempts = whole.stats.accepted + whole.stats.rejected
     same = few
     for _ in range((attempts - 1) // 8):
         assert same.status == "max_steps"
-        same = same.resume(1, max_steps=8, check=False)
+        same = same.resume(1, max_steps=8, on_failure="ignore")
     assert np.array_equal(same.y, whole.y)
     later = few
     while later.status == "max_steps":
-        later = later.resume(3, max_steps=8, check=False)
-    assert np.array_equal(later.y, pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 3), **how).y)
+        later = later.resume(3, max_steps=8, on_failure="ignore")
+    assert np.array_equal(later.y, pc.simulate(BOOK, q0=Q0, t_span=(0, 3), **how).y)
 
 
 def test_sampled_states_are_those_of_the_motion():
     resumed = begun(t_eval=[0, 1]).resume(10, t_eval=[5, 6, 7])
-    whole = pc.simulate(BOOK, q0=Q0, qd0=0, t_span=(0, 10), t_eval=[0, 1, 5, 6, 7])
+    whole = pc.simulate(BOOK, q0=Q0, t_span=(0, 10), t_eval=[0, 1, 5, 6, 7])
     assert np.array_equal(resumed.t, whole.t)
     assert np.array_equal(resumed.y, whole.y)
 
@@ -187,8 +187,8 @@ def test_a_blow_up_is_told_alike_whether_the_run_goes_on_or_never_stopped():
     """The ledger's rate overflows a step before the motion does."""
     damped = pc.effects.ViscousJoint(joint=1, damping=0.5, damping2=0.375)
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=[damped])
-    how = {"method": "rk4", "step": 0.003, "ledger": True, "check": False}
+    how = {"method": "rk4", "step": 0.003, "ledger": True, "on_failure": "ignore"}
     whole = pc.simulate(scene, q0=1.0, qd0=2.0, t_span=(0, -2.5), **how)
     assert whole.status == "non_finite"
     leg = pc.simulate(scene, q0=1.0, qd0=2.0, t_span=(0, -1.0), **how)
-    assert leg.resume(-2.5, check=False).message == whole.message
+    assert leg.resume(-2.5, on_failure="ignore").message == whole.message

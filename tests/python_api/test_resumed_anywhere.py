@@ -175,7 +175,7 @@ def in_legs(
         cap = {} if max_steps is None else {"max_steps": max_steps}
         times = {"t_eval": sign * new} if how["store"] == "times" and len(new) else {}
         if sol is None:
-            sol = pc.simulate(scene, *start, (0, sign * t_end), **how, **cap, **times)
+            sol = pc.simulate(scene, (0, sign * t_end), *start, **how, **cap, **times)
         else:
             sol = sol.resume(sign * t_end, **cap, **times)
         done = t_end
@@ -244,12 +244,11 @@ def test_one_attempt_a_leg_is_the_same_run(ledger: bool, rtol: float) -> None:
     how = {"ledger": ledger, "rtol": rtol, "compensated": ledger}
     whole = pc.simulate(RUBBED, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
     assert whole.stats.limited_by_break > 2
-    sol = pc.simulate(
-        RUBBED, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), max_steps=1, check=False, **how
-    )
+    silent = {"max_steps": 1, "on_failure": "ignore"}
+    sol = pc.simulate(RUBBED, (0, 1.0), [0.4, 1.0], [3.0, -2.0], **silent, **how)
     legs = 1
     while sol.status == "max_steps" and legs < 10_000:
-        sol = sol.resume(1.0, max_steps=1, check=False)
+        sol = sol.resume(1.0, max_steps=1, on_failure="ignore")
         legs += 1
     assert legs > 20
     assert differences(whole, sol) == []
@@ -266,13 +265,13 @@ def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(
         links=[pc.Link(mass=1.0, length=0.6)], effects=[fx.DrivenPivot(spline=spline), fx.Lock(1)]
     )
     with pytest.warns(pc.PendcoreWarning, match="its spline goes from"):
-        whole = pc.simulate(scene, q0=1.0, qd0=0.0, t_span=(0, t_end), ledger=True, check=False)
+        whole = pc.simulate(scene, q0=1.0, t_span=(0, t_end), ledger=True, on_failure="ignore")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pc.PendcoreWarning)
-        begun = pc.simulate(scene, q0=1.0, qd0=0.0, t_span=(0, cut * t_end), ledger=True)
+        begun = pc.simulate(scene, q0=1.0, t_span=(0, cut * t_end), ledger=True)
     assert (whole.status, whole.t[-1]) == ("non_finite", 3.5 if t_end > 0 else -1.0)
     assert np.isfinite(whole.energy().ledger.residual).all()
-    assert differences(whole, begun.resume(t_end, check=False)) == []
+    assert differences(whole, begun.resume(t_end, on_failure="ignore")) == []
 
 
 class Raises:
@@ -329,8 +328,8 @@ def stopped(way: str, **how: Any) -> pc.Solution:
         elif way == "progress":
             how["progress"] = raises
         else:
-            how |= {"time_limit": 0.1, "check": False}
-        return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], qd0=0, t_span=(0, 3000.0), **how)
+            how |= {"time_limit": 0.1, "on_failure": "ignore"}
+        return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 3000.0), **how)
     except (KeyboardInterrupt, LookupError) as stop:
         return stop.solution  # type: ignore[union-attr]
 
@@ -343,7 +342,7 @@ def test_a_run_that_was_stopped_from_outside_goes_on_the_same(way: str, compensa
     assert begun.status != "finished"
     reached = float(begun.t[-1])
     assert 0 < reached < 3000
-    whole = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], qd0=0, t_span=(0, reached + 1.0), **how)
+    whole = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, reached + 1.0), **how)
     assert differences(whole, pickle.loads(pickle.dumps(begun)).resume(reached + 1.0)) == []
 
 

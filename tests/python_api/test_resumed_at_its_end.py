@@ -23,13 +23,19 @@ def test_one_attempt_a_leg_gets_past_a_last_step_that_is_rejected(
     whole = pc.simulate(free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end), **how)
     longer = pc.simulate(free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end + 1), **how)
     sol = pc.simulate(
-        free, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, t_end), max_steps=1, check=False, **how
+        free,
+        q0=[0.4, 1.0],
+        qd0=[3.0, -2.0],
+        t_span=(0, t_end),
+        max_steps=1,
+        on_failure="ignore",
+        **how,
     )
     attempts = whole.stats.accepted + whole.stats.rejected
     for _ in range(attempts - 1):
         assert sol.status == "max_steps"
         assert differences(longer, sol.resume(t_end + 1)) == []
-        sol = sol.resume(t_end, max_steps=1, check=False)
+        sol = sol.resume(t_end, max_steps=1, on_failure="ignore")
     assert differences(whole, sol) == []
 
 
@@ -48,10 +54,10 @@ def test_to_go_on_to_where_a_run_stands_is_to_stay_there(
 ) -> None:
     """The time of the run has more digits than a double, and differs from `sol.t[-1]` by these."""
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * 2, effects=effects)
-    start = ([1.0, 1.0], [0.0, 0.5], (1.0, 3.0))
+    start = ((1.0, 3.0), [1.0, 1.0], [0.0, 0.5])
     how = {"method": "dopri5", "store": store}
     whole = pc.simulate(scene, *start, **how)
-    sol = pc.simulate(scene, *start, max_steps=steps, check=False, **how)
+    sol = pc.simulate(scene, *start, max_steps=steps, on_failure="ignore", **how)
     stays = sol.resume(sol.t[-1])
     assert stays.status == "finished"
     assert stays.t.tobytes() == sol.t.tobytes()
@@ -77,13 +83,13 @@ def test_a_run_whose_contact_had_no_solution_does_not_go_on() -> None:
         "q0": [-1.0, -2.937960905417783, 1e-9, 0.0],
         "qd0": [0.5556183901582339, 0.0, 3.536705680691237, 3.536705680691237],
         "t_span": (-0.8563206000640616, 0.0),
-        "check": False,
+        "on_failure": "ignore",
     }
     scene = pc.Scene(links=links, gravity=0.0, effects=effects)
     whole = pc.simulate(scene, **start)
     assert whole.status == "non_finite"
     stopped = pc.simulate(scene, **start, max_steps=whole.stats.accepted)
     assert stopped.status == "max_steps"
-    resumed = stopped.resume(0.0, max_steps=300, check=False)
+    resumed = stopped.resume(0.0, max_steps=300, on_failure="ignore")
     assert resumed.status == "non_finite"
     assert resumed.run.t_reached == whole.run.t_reached

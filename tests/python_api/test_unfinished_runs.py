@@ -58,14 +58,14 @@ def test_a_run_that_does_not_get_to_its_end_warns_of_status_time_and_remedy(stat
 @pytest.mark.parametrize("status", UNFINISHED)
 def test_with_check_it_raises_and_has_the_run_so_far(status: str) -> None:
     with pytest.raises(pc.RunError, match=f"with status {status}: ") as end:
-        pc.simulate(**UNFINISHED[status], check=True)
+        pc.simulate(**UNFINISHED[status], on_failure="raise")
     assert end.value.solution.status == status
     assert "check=" not in str(end.value)
 
 
 @pytest.mark.parametrize("status", UNFINISHED)
 def test_without_check_it_says_nothing(status: str) -> None:
-    assert pc.simulate(**UNFINISHED[status], check=False).status == status
+    assert pc.simulate(**UNFINISHED[status], on_failure="ignore").status == status
 
 
 @pytest.mark.parametrize("check", [None, True, False])
@@ -82,20 +82,20 @@ def test_a_fit_does_not_take_a_shorter_run_for_the_whole() -> None:
     data = np.zeros((101, 2))
     how: dict[str, Any] = START | {"t_eval": np.linspace(0, 5, 101), "max_steps": 1}
     how["method"] = "dopri5"
-    silent = pc.simulate(BOOK, **how, check=False)
+    silent = pc.simulate(BOOK, **how, on_failure="ignore")
     assert (silent.q - data).shape == (101, 2)
     with pytest.warns(pc.PendcoreWarning, match="with status max_steps"):
         pc.simulate(BOOK, **how)
 
 
 def test_a_resumed_run_is_checked_by_what_resume_is_told() -> None:
-    begun = pc.simulate(BOOK, q0=START["q0"], t_span=(0, 1), check=True)
+    begun = pc.simulate(BOOK, q0=START["q0"], t_span=(0, 1), on_failure="raise")
     with pytest.warns(pc.PendcoreWarning, match=r"before t_end = 3 s, with status max_steps"):
         begun.resume(3, max_steps=2)
     with pytest.raises(pc.RunError) as end:
-        begun.resume(3, max_steps=2, check=True)
+        begun.resume(3, max_steps=2, on_failure="raise")
     assert end.value.solution.resume(3).success
-    assert begun.resume(3, max_steps=2, check=False).status == "max_steps"
+    assert begun.resume(3, max_steps=2, on_failure="ignore").status == "max_steps"
 
 
 @pytest.mark.parametrize("options", [{"max_steps": 30}, {"time_limit": 1e-6}])
@@ -105,10 +105,10 @@ def test_a_run_for_an_error_is_checked_as_well(options: Any) -> None:
     with pytest.warns(pc.PendcoreWarning, match=f"{status}: .*; its error: asked"):
         pc.simulate(BOOK, **how)
     with pytest.raises(pc.RunError, match=status) as end:
-        pc.simulate(BOOK, **how, check=True)
+        pc.simulate(BOOK, **how, on_failure="raise")
     assert end.value.solution.accuracy is not None
     assert not end.value.solution.accuracy.reached
-    assert pc.simulate(BOOK, **how, check=False).status == status
+    assert pc.simulate(BOOK, **how, on_failure="ignore").status == status
 
 
 def test_where_warnings_are_errors_the_run_is_not_lost() -> None:
@@ -120,27 +120,27 @@ def test_where_warnings_are_errors_the_run_is_not_lost() -> None:
 
 def test_an_error_of_a_run_pickles_with_the_run() -> None:
     with pytest.raises(pc.RunError) as end:
-        pc.simulate(**UNFINISHED["max_steps"], check=True)
+        pc.simulate(**UNFINISHED["max_steps"], on_failure="raise")
     again = pickle.loads(pickle.dumps(end.value))
     assert str(again) == str(end.value)
     assert np.array_equal(again.solution.y, end.value.solution.y)
 
 
 def test_a_case_has_its_own_check_and_whoever_runs_it_another() -> None:
-    options = {"max_steps": 5, "check": True}
+    options = {"max_steps": 5, "on_failure": "raise"}
     case = pc.Case(scene=BOOK, **START, name="short", options=options)
     assert pc.read_case(case.to_toml()) == case
     with pytest.raises(pc.RunError) as end:
         case.simulate()
     assert end.value.solution.name == "short"
-    assert case.simulate(check=False).status == "max_steps"
+    assert case.simulate(on_failure="ignore").status == "max_steps"
     warned = pc.Case(scene=BOOK, **START, options={"max_steps": 5})
     with pytest.warns(pc.PendcoreWarning, match="with status max_steps"):
         again = warned.simulate().case()
     assert again.options["max_steps"] == 5
     assert "check" not in again.options
     with pytest.raises(pc.RunError):
-        warned.simulate(check=True)
+        warned.simulate(on_failure="raise")
 
 
 @pytest.mark.parametrize("check", ["yes", 1, 0, np.nan])
@@ -180,7 +180,7 @@ def test_a_wrong_check_in_a_case_file_is_told_with_its_line(
 
 
 def test_of_a_run_that_kept_no_time_the_way_that_it_went_is_drawn() -> None:
-    how: dict[str, Any] = START | {"max_steps": 3, "check": False}
+    how: dict[str, Any] = START | {"max_steps": 3, "on_failure": "ignore"}
     none = pc.simulate(BOOK, **how, t_eval=[4.0], store="times")
     assert len(none.t) == 0
     line = none.plot(what="path")[0]
@@ -193,5 +193,5 @@ def test_what_is_run_on_the_way_to_an_answer_says_nothing() -> None:
     sol = pc.simulate(BOOK, **START)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        sol.error(time_limit=1e-3)
-        pc.accuracy_cost(BOOK, START["q0"], 0, (0, 50), time_limit=0.2)
+        sol.estimate_error(time_limit=1e-3)
+        pc.accuracy_cost(BOOK, q0=START["q0"], t_span=(0, 50), time_limit=0.2)

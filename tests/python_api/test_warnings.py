@@ -36,7 +36,7 @@ def members(k: int) -> None:
 def wave(k: int) -> None:
     driven = pc.effects.Motor(1, table=pc.effects.Table(t=[0, 0.5 + k], torque=[1, 2]))
     one = pc.Scene.textbook().replace(effects=[driven])
-    pc.simulate(one, q0=0.3, t_span=(0, 1 + k), check=False)
+    pc.simulate(one, q0=0.3, t_span=(0, 1 + k), on_failure="ignore")
 
 
 LOOPS: dict[str, tuple[Callable[[int], object], int]] = {

@@ -29,7 +29,7 @@ def sol() -> pc.Solution:
 @pytest.fixture(scope="module")
 def cost() -> pc.AccuracyCost:
     return pc.accuracy_cost(
-        BOOK.scene, BOOK.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1
+        BOOK.scene, q0=BOOK.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1
     )
 
 

@@ -91,7 +91,7 @@ def test_laws_that_meet_lead_on(method: str, step: float | None, block: int) -> 
             t_span=(0, 3),
             method=method,
             max_steps=100_000,
-            check=False,
+            on_failure="ignore",
             **ways,
         )
         may_fail = method == "radau5" and step is not None  # in so long a step
@@ -107,7 +107,7 @@ def test_two_joints_are_let_go_at_one_time(method: str, rtol: float, start: floa
     for j in (1, 2):
         effects += [fx.DryJointFriction(joint=j, coulomb=0.5), fx.Motor(joint=j, sinusoid=hum)]
     run = pc.simulate(
-        rod(*effects, links=2), q0=0, qd0=0, t_span=(start, start + 2), method=method, rtol=rtol
+        rod(*effects, links=2), q0=0, t_span=(start, start + 2), method=method, rtol=rtol
     )
     assert run.status == "finished", run.message
     moving = run.t[(run.qd != 0).any(axis=1)]
@@ -120,9 +120,7 @@ def test_a_pulse_is_seen_however_far_away_the_end_is(method: str) -> None:
     """1e3 N m at the top of 2e-6 s give an impulse of 1e-3, which friction takes in 0.1 s."""
     table = fx.Table(t=[-1, 1.0, 1.000001, 1.000002, 1e11], torque=[0, 0, 1e3, 0, 0])
     scene = rod(fx.Motor(joint=1, table=table), fx.DryJointFriction(joint=1, coulomb=0.01))
-    ends = [
-        pc.simulate(scene, q0=0, qd0=0, t_span=(0, t), method=method).q[-1, 0] for t in (10.0, 1e9)
-    ]
+    ends = [pc.simulate(scene, q0=0, t_span=(0, t), method=method).q[-1, 0] for t in (10.0, 1e9)]
     assert ends[0] == pytest.approx(0.001**2 / (2 * 0.01), rel=1e-3)
     assert ends[1] == ends[0]
 
@@ -137,9 +135,7 @@ def test_coarse_steps_pump_no_energy_into_a_joint_at_its_stop(step: float, metho
     ]
     scene = pc.Scene(links=links, effects=effects)
     start = [-0.15020579195563455, -1.115133372329371]
-    sol = pc.simulate(
-        scene, q0=start, qd0=0, t_span=(0, 3), method=method, step=step, max_steps=3000
-    )
+    sol = pc.simulate(scene, q0=start, t_span=(0, 3), method=method, step=step, max_steps=3000)
     assert sol.success, sol.message
     assert np.count_nonzero(np.diff(sol.t) == 0) < 30
     assert np.diff(sol.energy().total).max() < 1e-3

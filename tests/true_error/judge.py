@@ -46,13 +46,13 @@ class Verdict:
     says : str
         The verification, the message, or the exception.
     achieved, true, estimated : float or None
-        What the run says it reached, the truth, and what ``sol.error()`` says of it, all as shares
-        of the total length; ``true`` is missing where the reference is not good enough.
+        What the run says it reached, the truth, and what ``sol.estimate_error()`` says of it, all
+        as shares of the total length; ``true`` is missing where the reference is not good enough.
     unsure : float
         The largest uncertainty of ``true``.
     is_one_estimate : bool
-        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.error()`` gives the
-        same end.
+        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.estimate_error()``
+        gives the same end.
     exception : str
         The exception that was raised, if it is not an `AccuracyError`.
     doubles : float or None
@@ -106,7 +106,7 @@ class Verdict:
 
     @property
     def is_contradicted(self) -> bool:
-        """Whether ``sol.error()`` says another thing than ``sol.accuracy``, or not to the end."""
+        """Whether the estimate of the error contradicts ``sol.accuracy``, or ends before it."""
         is_said_again = self.estimated in (None, self.achieved) and self.is_one_estimate
         return self.outcome == "kept" and not is_said_again
 
@@ -193,7 +193,7 @@ def _asked_error(
     try:
         with answering(verdict, seconds):
             sol = simulate(
-                drawn.scene, drawn.q0, drawn.qd0, drawn.span,
+                drawn.scene, drawn.span, drawn.q0, drawn.qd0,
                 error=drawn.error, time_limit=seconds, **drawn.options,
             )  # fmt: skip
         verdict.outcome = outcome_of(sol)
@@ -207,7 +207,7 @@ def _asked_error(
     is_kept = verdict.outcome == "kept"
     if is_kept and len(sol.t):
         with answering(verdict, seconds):
-            estimate = sol.error(time_limit=seconds)
+            estimate = sol.estimate_error(time_limit=seconds)
             verdict.estimated = estimate.largest
             ends = sol.accuracy.until, estimate.valid_until(drawn.error, of="position")
             last = float(sol.t[-1])
@@ -258,7 +258,7 @@ def _valid_until(
     """Run without asking for an error, and see whether the run knows how long it is right."""
     with answering(verdict, seconds):
         sol = simulate(
-            drawn.scene, drawn.q0, drawn.qd0, drawn.span, rtol=drawn.rtol, time_limit=seconds
+            drawn.scene, drawn.span, drawn.q0, drawn.qd0, rtol=drawn.rtol, time_limit=seconds
         )
         verdict.limit = drawn.limit
         verdict.valid_until = sol.valid_until(drawn.limit, time_limit=seconds)

@@ -69,7 +69,7 @@ def broken(verdicts: list[Verdict]) -> list[str]:
         f"{record[name]} {what}"
         for name, what in (
             ("above", "above what was asked"),
-            ("contradicted", "told as kept, which sol.error() denies"),
+            ("contradicted", "told as kept, which sol.estimate_error() denies"),
             ("late", "with a valid_until that is late"),
             ("exceptions", "with an exception other than AccuracyError"),
         )
@@ -125,7 +125,7 @@ def line_of(verdict: Verdict, fault: str) -> str:
     what = {
         "above": errors,
         "told too little": errors,
-        "contradicted": f"sol.error() {times(verdict.estimated, verdict.asked)}, true "
+        "contradicted": f"sol.estimate_error() {times(verdict.estimated, verdict.asked)}, true "
         f"{times(verdict.true, verdict.asked)} of {verdict.asked:.2e}",
         "late": f"valid_until {verdict.valid_until}, past {verdict.limit} at {verdict.first_past}",
     }.get(fault, "")

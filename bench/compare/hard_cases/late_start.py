@@ -19,7 +19,9 @@ def told(words: str, *, says: bool) -> Outcome:
 def pendcore() -> Outcome:
     import pendcore as pc
 
-    sol = pc.simulate(pc.Scene.textbook(), q0=START[:2], t_span=(T_START, T_END), check=False)
+    sol = pc.simulate(
+        pc.Scene.textbook(), q0=START[:2], t_span=(T_START, T_END), on_failure="ignore"
+    )
     words = f'status `{sol.status}`: "{sol.message}"'
     return told(words, says=sol.status == "step_too_small")
 

@@ -1,11 +1,11 @@
 """The estimate of a run's error over its whole curve.
 
-`Solution.error` and `Solution.valid_until` come from here, and what ``simulate(error=...)`` tells
-where it does not know the error from the defect (`pendcore.accuracy.defect_correction`). The run is
-compared with better second runs: by another method for `Solution.error`, mostly by the trial's own
-for ``simulate(error=...)``. Their steps are others, and their constants and starts are moved by a
-few last bits (`pendcore.accuracy.rounding`). With the second runs r_1, r_2, ... the error is at
-most
+`Solution.estimate_error` and `Solution.valid_until` come from here, and what
+``simulate(error=...)`` tells where it does not know the error from the defect
+(`pendcore.accuracy.defect_correction`). The run is compared with better second runs: by another
+method for `Solution.estimate_error`, mostly by the trial's own for ``simulate(error=...)``. Their
+steps are others, and their constants and starts are moved by a few last bits
+(`pendcore.accuracy.rounding`). With the second runs r_1, r_2, ... the error is at most
 
     (1 + share) max_i |run - r_i| + max_ij |r_i - r_j|
 
@@ -150,7 +150,7 @@ def error_over(
 def error_of(
     solution: RunResult, *, time_limit: float | None = None, progress: Progress = None
 ) -> ErrorEstimate:
-    """Return the error of a run, estimated when first asked for; see `pendcore.Solution.error`."""
+    """Return the error of a run, estimated when first asked for."""
     time_limit_of(time_limit)  # a wrong one is refused even where the error is known already
     if solution.known_error is None:
         error = error_estimate(solution, time_limit=time_limit, progress=progress)
@@ -163,7 +163,7 @@ def error_of(
 def error_estimate(
     solution: RunResult, *, time_limit: float | None = None, progress: Progress = None
 ) -> ErrorEstimate:
-    """Estimate the error of a solution; see `Solution.error`."""
+    """Estimate the error of a solution; see `Solution.estimate_error`."""
     if solution.store != "dense" and not len(solution.t):
         raise ValueError(
             "error: the run ended before the first of its t_eval and kept no state to compare: "

@@ -14,7 +14,7 @@ from pendcore.figures.plot import plot as draw
 from pendcore.films.animate import animate
 from pendcore.films.stage import Choices
 from pendcore.films.video import to_video
-from pendcore.messages.arguments import known_keywords, text, whole_number
+from pendcore.messages.arguments import text, whole_number
 from pendcore.messages.progress import Progress
 from pendcore.page.html import page_of
 from pendcore.page.notebook import NotebookPage, widget_of
@@ -30,7 +30,6 @@ class DrawnResult(RunResult):
 
     __slots__ = ()
 
-    @known_keywords
     def plot(
         self,
         ax: Any = None,
@@ -107,7 +106,6 @@ class DrawnResult(RunResult):
             **line_properties,
         )  # fmt: skip
 
-    @known_keywords
     def animate(
         self,
         *others: RunResult,
@@ -138,7 +136,6 @@ class DrawnResult(RunResult):
         )  # fmt: skip
         return animate((self, *others), _names((self, *others), names), given)
 
-    @known_keywords
     def to_video(
         self,
         path: str | os.PathLike[str],
@@ -200,7 +197,6 @@ class DrawnResult(RunResult):
         runs = self, *others
         return to_video(runs, _names(runs, names), path, given, size, progress)
 
-    @known_keywords
     def to_html(self, path: str | os.PathLike[str], *, title: str | None = None) -> Path:
         """Write the run as one page with the core inside, which opens from disk; return its path.
 
@@ -230,7 +226,6 @@ class DrawnResult(RunResult):
             file.write_text(page, encoding="utf-8")
         return Path(path)
 
-    @known_keywords
     def page(self, *, height: int = 900) -> NotebookPage:
         """Return the page of `to_html` as a notebook shows it: alive, in exported notebooks, too.
 
@@ -245,7 +240,6 @@ class DrawnResult(RunResult):
         pixels = whole_number("height", height)
         return NotebookPage(page_of(self), pixels)
 
-    @known_keywords
     def widget(self, *, height: int = 900) -> Any:
         """Return the same page as an anywidget (which takes that package).
 

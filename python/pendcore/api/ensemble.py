@@ -13,28 +13,28 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore.api.ensemble_solution import Ensemble, run_ensemble
 from pendcore.api.scene import Scene
-from pendcore.ensemble.keep import REDUCERS, Reducer
 from pendcore.ensemble.members import members_of
+from pendcore.ensemble.reducers import REDUCERS, Reducer
 from pendcore.ensemble.request import Request
-from pendcore.messages.arguments import Floats, known_keywords, numbers, text, time_span
+from pendcore.messages.arguments import Floats, numbers, text, time_span
 from pendcore.messages.progress import Progress
 from pendcore.messages.warning import warn
 from pendcore.run.events import Event, events_asked_for
+from pendcore.run.keywords import OnFailure
 from pendcore.run.options import RUN_DEFAULTS
-from pendcore.scene.scene import require_start
+from pendcore.scene.scene import require_scene
 
 Keep = str | Reducer | Mapping[str, Reducer]
 _TAKEN = ("status", "t_reached", "q", "qd", "q0", "qd0", "link", "time", "extreme", "component")
-_REDUCERS = ", ".join(f"pc.keep.{one.__name__}" for one in REDUCERS)
+_REDUCERS = ", ".join(f"pc.reducers.{one.__name__}" for one in REDUCERS)
 _KEEPS = f'"end", "times", or a reducer or a dictionary of reducers: {_REDUCERS}'
 
 
-@known_keywords
 def ensemble(
     scene: Scene,
-    q0: npt.ArrayLike | None = None,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] | None = None,
     *,
     vary: Mapping[str, npt.ArrayLike] | None = None,
     keep: Keep = "end",
@@ -50,7 +50,7 @@ def ensemble(
     store: str | os.PathLike[str] | None = None,
     chunk: int | None = None,
     time_limit: float | None = None,
-    check: bool | None = None,
+    on_failure: OnFailure = "warn",
     progress: Progress = None,
 ) -> Ensemble:
     """Run a scene from many starts, and with many values of its parameters.
@@ -62,16 +62,16 @@ def ensemble(
     ----------
     scene : Scene
         What moves.
+    t_span : (float, float)
+        Start and end, s, of every member.
     q0 : array_like, (..., n)
         Angles at the start, rad. The leading axes of ``q0``, ``qd0`` and ``vary`` broadcast, and
         are those of the ensemble.
     qd0 : array_like, (..., n), default 0
         Rates at the start, rad/s.
-    t_span : (float, float)
-        Start and end, s, of every member.
     vary : dict, optional
         Names of parameters, as `Scene.parameters` has them, and their values, (...).
-    keep : "end", "times", a reducer of `pendcore.keep`, or a dictionary of reducers
+    keep : "end", "times", a reducer of `pendcore.reducers`, or a dictionary of reducers
         With ``"end"`` the ensemble keeps the last state of each member, with ``"times"`` the states
         at ``t_eval``, and with reducers the last state and what the reducers find.
     t_eval : array_like, (n_t,), optional
@@ -92,8 +92,8 @@ def ensemble(
         that is there keeps its own.
     time_limit : float, optional
         s, for the whole ensemble; what is not run by then has the status ``"not_run"``.
-    check : bool, optional
-        What to do if members fail. True raises an error, False says nothing. Default: a warning.
+    on_failure : {"warn", "raise", "ignore"}
+        What to do if members fail.
     progress : bool or callable, optional
         As in `simulate`, for the whole ensemble.
 
@@ -112,7 +112,7 @@ def ensemble(
         If the disk is too small for the store, or full, or cannot be written, or if another run is
         writing the store.
     RuntimeError
-        With ``check=True``, if members fail.
+        With ``on_failure="raise"``, if members fail.
     KeyboardInterrupt, or any exception of ``progress``, a worker or the disk
         The attribute ``ensemble`` has the members that were run.
 
@@ -120,16 +120,16 @@ def ensemble(
     -----
     PendcoreWarning
         If all starts are multiples of 5 and some are large, as angles in degrees are; or if members
-        fail and ``check`` is not given.
+        fail, unless ``on_failure`` says otherwise.
 
     Examples
     --------
-    >>> starts = pc.draw.uniform(-np.pi, np.pi, (100, 2), seed=1)
-    >>> found = pc.ensemble(pc.Scene.textbook(), q0=starts, t_span=(0, 5))
+    >>> starts = pc.sampling.uniform(-np.pi, np.pi, (100, 2), seed=1)
+    >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), starts)
     >>> found.q.shape, found.counts()
     ((100, 2), {'finished': 100})
     """
-    q0 = require_start(scene, q0)
+    require_scene(scene)
     members = members_of(scene, q0, qd0, vary)
     _warn_of_degrees(np.asarray(q0, dtype=np.float64))
     options = {
@@ -140,7 +140,7 @@ def ensemble(
     request = Request(time_span(t_span), _times(keep, t_eval), reducers, options)
     of_the_whole = {
         "workers": workers, "executor": executor, "store": store, "chunk": chunk,
-        "time_limit": time_limit, "check": check, "progress": progress,
+        "time_limit": time_limit, "on_failure": on_failure, "progress": progress,
     }  # fmt: skip
     return run_ensemble(members, request, of_the_whole)
 

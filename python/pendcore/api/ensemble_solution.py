@@ -27,13 +27,12 @@ from pendcore.ensemble.store import store_for
 from pendcore.ensemble.trust import resolved, second
 from pendcore.messages.arguments import (
     did_you_mean,
-    known_keywords,
     time_limit_of,
     whole_number,
 )
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import PendcoreWarning, warn
-from pendcore.run.run_error import require_check
+from pendcore.run.run_error import REMEDY, require_on_failure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,7 +56,6 @@ class Ensemble(EnsembleResult):
 
     __slots__ = ()
 
-    @known_keywords
     def member(self, index: Any) -> Solution:
         """Return the run of one member as a full `Solution`, with the bits that it had.
 
@@ -73,7 +71,7 @@ class Ensemble(EnsembleResult):
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [0.6, 1.0]])
         >>> sol = found.member(1)
         >>> sol.status, np.array_equal(sol.q[-1], found.q[1])
         ('finished', True)
@@ -82,11 +80,10 @@ class Ensemble(EnsembleResult):
         scene = self.members.scene_of(place)
         q0, qd0 = self.members.q0[place], self.members.qd0[place]
         return simulate(
-            scene, q0, qd0, self.request.t_span, t_eval=self.request.t_eval, check=False,
+            scene, self.request.t_span, q0, qd0, t_eval=self.request.t_eval, on_failure="ignore",
             **self.request.of_simulate(),
         )  # fmt: skip
 
-    @known_keywords
     def message(self, index: Any) -> str:
         """Return what the run of one member says of its end, or why it was refused.
 
@@ -94,7 +91,8 @@ class Ensemble(EnsembleResult):
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, np.nan]], t_span=(0, 5), check=False)
+        >>> starts = [[0.5, np.nan]]
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), starts, on_failure="ignore")
         >>> found.message(0)
         'q0[1] = nan: must be finite (rad)'
         """
@@ -105,7 +103,6 @@ class Ensemble(EnsembleResult):
         except ValueError as refusal:
             return str(refusal)
 
-    @known_keywords
     def rerun(self, **options: Any) -> Ensemble:
         """Run the members that failed once more, along one axis, with other options.
 
@@ -123,7 +120,7 @@ class Ensemble(EnsembleResult):
         --------
         >>> short = pc.ensemble(
         ...     pc.Scene.textbook(), q0=[[0.1, 0.1], [1.5, 1.5]], t_span=(0, 9), max_steps=60,
-        ...     check=False,
+        ...     on_failure="ignore",
         ... )
         >>> short.status, short.rerun(max_steps=1000).status
         (array(['max_steps', 'finished'], dtype='<U14'), array(['finished'], dtype='<U14'))
@@ -135,7 +132,6 @@ class Ensemble(EnsembleResult):
         request = self.request.with_options(**of_members)
         return run_ensemble(self.members.selected(places), request, of_the_whole)
 
-    @known_keywords
     def second(self, **of_the_whole: Any) -> Ensemble:
         """Run the same members once more, independently, to see which of them are resolved.
 
@@ -146,19 +142,18 @@ class Ensemble(EnsembleResult):
         Parameters
         ----------
         **of_the_whole
-            ``workers``, ``executor``, ``store``, ``chunk``, ``time_limit``, ``check`` and
+            ``workers``, ``executor``, ``store``, ``chunk``, ``time_limit``, ``on_failure`` and
             ``progress``, as in `ensemble`.
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [0.6, 1.0]])
         >>> bool(np.abs(found.second().q - found.q).max() < 1e-6)
         True
         """
         members, request = second(self.members, self.request)
         return run_ensemble(members, request, _of_the_whole("second", of_the_whole))
 
-    @known_keywords
     def resolved(
         self,
         other: Ensemble | None = None,
@@ -190,10 +185,9 @@ class Ensemble(EnsembleResult):
         array([ True, False])
         """
         if other is None:
-            other = self.second(check=False, progress=progress)
+            other = self.second(on_failure="ignore", progress=progress)
         return resolved(self, other, name, within)
 
-    @known_keywords
     def plot(
         self,
         name: str | None = None,
@@ -224,14 +218,13 @@ class Ensemble(EnsembleResult):
         Examples
         --------
         >>> q0 = np.stack(np.meshgrid([0.5, 1.0, 1.5], [0.0, 1.0], indexing="ij"), axis=-1)
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=q0, t_span=(0, 5))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), q0)
         >>> [image] = found.plot("q[2]")
         >>> image.axes.get_xlabel()
         'q0[1] (rad)'
         """
         return plot(self, name, ax, resolved, properties)
 
-    @known_keywords
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
@@ -239,14 +232,13 @@ class Ensemble(EnsembleResult):
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [0.6, 1.0]])
         >>> found.save("two.npz")
         >>> np.array_equal(pc.load("two.npz").q, found.q)
         True
         """
         save(self, path)
 
-    @known_keywords
     def to_xarray(self) -> xr.Dataset:
         """Return everything as a data set of xarray, with units.
 
@@ -269,9 +261,10 @@ class Ensemble(EnsembleResult):
         return to_xarray(self)
 
 
-_OF_THE_WHOLE: dict[str, Any] = dict.fromkeys(
-    ("workers", "executor", "store", "chunk", "time_limit", "check", "progress")
-)
+_OF_THE_WHOLE: dict[str, Any] = {
+    **dict.fromkeys(("workers", "executor", "store", "chunk", "time_limit", "progress")),
+    "on_failure": "warn",
+}
 
 
 def _of_the_whole(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> dict[str, Any]:
@@ -285,7 +278,7 @@ def _of_the_whole(owner: str, given: dict[str, Any], others: Iterable[str] = ())
 
 def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> Ensemble:
     """Run members; ``given`` has the options of the whole."""
-    require_check(given["check"])
+    require_on_failure(given["on_failure"])
     request.check_reducers()
     workers = _at_least_1("workers", given["workers"], "threads")
     chunk = _at_least_1("chunk", given["chunk"], "members")
@@ -317,7 +310,7 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
             raise found.error
         finally:
             del found  # the traceback holds this frame: what it holds would wait for the collector
-    return _checked(result, given["check"])
+    return _checked(result, given["on_failure"])
 
 
 def _at_least_1(name: str, value: Any, unit: str) -> int:
@@ -330,21 +323,21 @@ def _at_least_1(name: str, value: Any, unit: str) -> int:
     return count
 
 
-def _checked(found: Ensemble, check: bool | None) -> Ensemble:
-    if check is False or found.success.all():
+def _checked(found: Ensemble, on_failure: str) -> Ensemble:
+    if on_failure == "ignore" or found.success.all():
         return found
     told = ", ".join(f"{count} {name}" for name, count in found.counts().items())
     place = tuple(found.failed[0].tolist())
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
-    if check:
+    if on_failure == "raise":
         try:
             raise RuntimeError(complaint)
         except RuntimeError as error:
             error.ensemble = found  # type: ignore[attr-defined]
             raise
     try:
-        warn(f"{complaint}; check=True raises an error, check=False says nothing")
+        warn(f"{complaint}; {REMEDY}")
     except PendcoreWarning as error:
         error.ensemble = found  # type: ignore[attr-defined]
         raise

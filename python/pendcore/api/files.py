@@ -17,12 +17,10 @@ from pendcore.ensemble.archive import is_ensemble
 from pendcore.ensemble.archive import load as load_ensemble
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.store import opened
-from pendcore.messages.arguments import known_keywords
 from pendcore.messages.warning import warn
 from pendcore.scene.scene import SceneData
 
 
-@known_keywords
 def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     """Read a solution or an ensemble that was saved.
 
@@ -67,7 +65,6 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     return result_as(Solution, result)
 
 
-@known_keywords
 def read_case(source: str | os.PathLike[str]) -> Case:
     """Read a case from TOML.
 

@@ -9,16 +9,14 @@ import numpy.typing as npt
 
 from pendcore.explanation.explain import explain
 from pendcore.explanation.explanation import Explanation
-from pendcore.messages.arguments import known_keywords, vector
+from pendcore.messages.arguments import vector
 from pendcore.messages.html import beside, drawing, table
-from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
 
 MOST_ROWS = 20
 """The most links in the table of a notebook."""
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
 class Scene(SceneData):
     """A chain of links on a pivot, and what acts on it, ready to be simulated.
@@ -73,7 +71,6 @@ class Scene(SceneData):
         about = f"<p>gravity {self.gravity:.6g} m/s^2, downwards</p>"
         return beside(about + table(links, head) + below, drawing([pose], None, f"{n} links"))
 
-    @known_keywords
     def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
         """Say what is simulated and what is not, what it costs, and how fast it moves.
 

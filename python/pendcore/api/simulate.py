@@ -10,19 +10,17 @@ import numpy.typing as npt
 from pendcore.api.scene import Scene
 from pendcore.api.solution import Solution
 from pendcore.api.solve import solve
-from pendcore.messages.arguments import known_keywords
 from pendcore.run.keywords import RunKeywords
 from pendcore.run.methods import described_methods
 from pendcore.run.options import with_options
 
 
-@known_keywords
 @with_options()
 def simulate(
     scene: Scene,
-    q0: npt.ArrayLike | None = None,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] | None = None,
     **options: Unpack[RunKeywords],
 ) -> Solution:
     """Solve the equations of motion of a scene from a start.
@@ -31,13 +29,13 @@ def simulate(
     ----------
     scene : Scene
         What moves.
+    t_span : (float, float)
+        Start and end, s. The end may lie before the start: the run then goes
+        backward (refused with dry friction or inelastic stops, whose past is not unique).
     q0 : array_like, (n,)
         Absolute angles at the start, rad. A scalar holds for every link.
     qd0 : array_like, (n,), default 0
         Angular rates at the start, rad/s. A scalar holds for every link.
-    t_span : (float, float)
-        Start and end, s. The end may lie before the start: the run then goes
-        backward (refused with dry friction or inelastic stops, whose past is not unique).
     {options}
 
     Returns
@@ -57,8 +55,8 @@ def simulate(
         verified. The attribute ``solution`` is the most accurate run, ``least`` the least error
         that can be kept.
     RunError
-        With ``check=True``, if the run does not reach its end, for whatever reason. The attribute
-        ``solution`` is the run so far.
+        With ``on_failure="raise"``, if the run does not reach its end, for whatever reason. The
+        attribute ``solution`` is the run so far.
     KeyboardInterrupt, or any exception of ``progress`` or of an effect's or event's function
         The attribute ``solution`` is the run so far; with an ``error`` it is the tightest run so
         far, and its ``accuracy`` says that it is not verified.
@@ -67,7 +65,7 @@ def simulate(
     -----
     PendcoreWarning
         If the start or the interval looks wrong, such as angles in degrees, or if the run does not
-        reach its end and ``check`` is not given.
+        reach its end, unless ``on_failure`` says otherwise.
 
     Notes
     -----
@@ -79,14 +77,14 @@ def simulate(
     Examples
     --------
     >>> scene = pc.Scene.textbook()
-    >>> sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
+    >>> sol = pc.simulate(scene, (0, 5), [np.pi / 4, np.pi / 3])
     >>> sol(2.5).round(6)  # q_1, q_2 (rad), qd_1, qd_2 (rad/s)
     array([ 0.933714,  0.704933, -0.019304,  1.484836])
-    >>> sol = pc.simulate(scene, q0=[np.pi / 4, np.pi / 3], t_span=(0, 5), error=1e-9)
+    >>> sol = pc.simulate(scene, (0, 5), [np.pi / 4, np.pi / 3], error=1e-9)
     >>> sol.accuracy.achieved <= 1e-9
     True
     """
-    return solve(Solution, scene, q0, qd0, t_span, options)  # type: ignore[arg-type]
+    return solve(Solution, scene, t_span, q0, qd0, options)  # type: ignore[arg-type]
 
 
 simulate.__doc__ = described_methods(simulate.__doc__)

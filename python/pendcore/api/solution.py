@@ -17,13 +17,12 @@ from pendcore.api.solve import solve
 from pendcore.cases.archive import save
 from pendcore.cases.case import CaseData
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov_of
-from pendcore.messages.arguments import known_keywords
 from pendcore.messages.progress import Progress
 from pendcore.run.call import resumed
 from pendcore.run.error_estimate import ErrorEstimate
+from pendcore.run.keywords import OnFailure
 from pendcore.run.options import RUN_DEFAULTS
-from pendcore.run.run_error import checked, require_check
-from pendcore.scene.frozen_state import frozen_state
+from pendcore.run.run_error import checked, require_on_failure
 from pendcore.views.export import to_pandas, to_xarray
 from pendcore.views.table import html, text
 
@@ -50,7 +49,7 @@ class Solution(DrawnResult):
 
     Examples
     --------
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), [np.pi / 4, np.pi / 3])
     >>> sol.status, sol.q.shape == (len(sol.t), 2)
     ('finished', True)
     >>> f"q_2 = {sol(2.5)[1]:.6f} rad at 2.5 s"
@@ -60,7 +59,6 @@ class Solution(DrawnResult):
     __slots__ = ()
     scene: Scene
 
-    @known_keywords
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques, N m: what motors would have to add to make the curve exact.
 
@@ -77,8 +75,9 @@ class Solution(DrawnResult):
         """
         return defect(self.scene, self.run, progress)
 
-    @known_keywords
-    def error(self, *, time_limit: float | None = None, progress: Progress = None) -> ErrorEstimate:
+    def estimate_error(
+        self, *, time_limit: float | None = None, progress: Progress = None
+    ) -> ErrorEstimate:
         """Estimate the error over time from independent second runs, made when first asked for.
 
         The second runs use another method, at a hundredth of this run's tolerances or less, with
@@ -105,17 +104,16 @@ class Solution(DrawnResult):
         Examples
         --------
         >>> sol = pc.Case.textbook().simulate()
-        >>> error = sol.error()
+        >>> error = sol.estimate_error()
         >>> f"{error.angle.max():.0e} rad, {error.position.max():.0e} of the total length"
         '5e-09 rad, 2e-09 of the total length'
         """
         return error_of(self, time_limit=time_limit, progress=progress)
 
-    @known_keywords
     def valid_until(
         self, limit: float = 0.1, *, of: str = "angle", time_limit: float | None = None
     ) -> float:
-        """Return how far to trust the run: the time at which its `error` passes a limit, s.
+        """Return how far to trust the run: the time at which its error passes a limit, s.
 
         The answer errs on the safe side; it is the end of the run if the error stays within the
         limit. See `ErrorEstimate.valid_until`.
@@ -127,17 +125,16 @@ class Solution(DrawnResult):
         of : {"angle", "position"}
             What is limited: the angles of the links, or the positions of joints and tip.
         time_limit : float, optional
-            As in `error`; the answer is then how far the run is known to hold by that time.
+            As in `estimate_error`; the answer is then how far the run is known to hold by then.
 
         Examples
         --------
-        >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 40))  # chaotic
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 40), 0.0)  # chaotic
         >>> f"{sol.valid_until():.0f} s, {sol.valid_until(1e-6, of='position'):.0f} s"
         '18 s, 7 s'
         """
-        return self.error(time_limit=time_limit).valid_until(limit, of=of)
+        return self.estimate_error(time_limit=time_limit).valid_until(limit, of=of)
 
-    @known_keywords
     def lyapunov(
         self,
         *,
@@ -156,7 +153,6 @@ class Solution(DrawnResult):
         """
         return lyapunov_of(self, count, transient, t_eval, progress)
 
-    @known_keywords
     def resume(
         self,
         t_end: float,
@@ -164,7 +160,7 @@ class Solution(DrawnResult):
         *,
         max_steps: int = RUN_DEFAULTS["max_steps"],
         time_limit: float | None = None,
-        check: bool | None = None,
+        on_failure: OnFailure = "warn",
         progress: Progress = None,
     ) -> Solution:
         """Continue to a later end, bitwise as if the run had never stopped.
@@ -176,7 +172,7 @@ class Solution(DrawnResult):
         t_eval : array_like, (k,), optional
             More times to keep, s: at or beyond the end of this run, and beyond its own ``t_eval``.
             Only a run that had a ``t_eval`` takes it.
-        max_steps, time_limit, check, progress
+        max_steps, time_limit, on_failure, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
             earlier ``t_end`` cut short, because all later steps depend on that cut. Attempts that
             are repeated to the same ``t_end`` do not count, so a ``max_steps`` of 1 makes progress,
@@ -196,17 +192,16 @@ class Solution(DrawnResult):
         --------
         >>> case = pc.Case.textbook()
         >>> longer = case.simulate().resume(10.0)
-        >>> whole = pc.simulate(case.scene, q0=case.q0, t_span=(0, 10), method="ode45")
+        >>> whole = pc.simulate(case.scene, (0, 10), case.q0, method="ode45")
         >>> np.array_equal(longer.y, whole.y)  # every bit
         True
         """
-        require_check(check)
+        require_on_failure(on_failure)
         longer = resumed(
             self, t_end, t_eval, max_steps=max_steps, time_limit=time_limit, progress=progress
         )
-        return checked(longer, check)
+        return checked(longer, on_failure)
 
-    @known_keywords
     def case(self) -> Case:
         """Return the case of this run, ready to be run again or written as TOML.
 
@@ -219,7 +214,6 @@ class Solution(DrawnResult):
         """
         return Case.of_solution(self)
 
-    @known_keywords
     def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
@@ -234,7 +228,6 @@ class Solution(DrawnResult):
         """
         save(self, path, progress=progress)
 
-    @known_keywords
     def to_pandas(self) -> pd.DataFrame:
         """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``.
 
@@ -251,7 +244,6 @@ class Solution(DrawnResult):
         """
         return to_pandas(self)
 
-    @known_keywords
     def to_xarray(self) -> xr.Dataset:
         """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``.
 
@@ -283,7 +275,6 @@ class Solution(DrawnResult):
         return html(self)
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False, eq=False)
 class Case(CaseData):
     """A scene with its start, its time span and the options of its run; immutable and hashable.
@@ -320,7 +311,6 @@ class Case(CaseData):
     scene: Scene
 
     @classmethod
-    @known_keywords
     def textbook(cls) -> Case:
         """Section 2.1 of the textbook: from rest at 45 and 60 degrees, for 5 s, by ode45.
 
@@ -338,11 +328,10 @@ class Case(CaseData):
             options={"method": "ode45"},
         )
 
-    @known_keywords
-    def simulate(self, *, check: bool | None = None) -> Solution:
+    def simulate(self, *, on_failure: OnFailure | None = None) -> Solution:
         """Run the case; see `pendcore.simulate`. The solution has the name of the case.
 
-        If ``check`` is given, it replaces that of the case.
+        If ``on_failure`` is given, it replaces that of the case.
 
         Examples
         --------
@@ -351,11 +340,10 @@ class Case(CaseData):
         'double pendulum, section 2.1'
         """
         options = dict(self.options)
-        require_check(options.get("check"))
-        if check is not None:
-            options["check"] = check
+        if on_failure is not None:
+            options["on_failure"] = on_failure
         try:
-            solution = solve(Solution, self.scene, self.q0, self.qd0, self.t_span, options)
+            solution = solve(Solution, self.scene, self.t_span, self.q0, self.qd0, options)
         except BaseException as stop:
             if isinstance(so_far := getattr(stop, "solution", None), Solution):
                 so_far.name = self.name

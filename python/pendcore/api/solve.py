@@ -15,18 +15,18 @@ from pendcore.messages.progress import ProgressBar, callback, close
 from pendcore.messages.warning import warn
 from pendcore.run.call import Start, completed
 from pendcore.run.events import events_asked_for
-from pendcore.run.options import CHECK, ERROR, OPTIONS, RUN_DEFAULTS
+from pendcore.run.options import ERROR, ON_FAILURE, OPTIONS, RUN_DEFAULTS, require_options
 from pendcore.run.result import Result, RunResult
-from pendcore.run.run_error import checked, require_check
-from pendcore.scene.scene import SceneData, require_start
+from pendcore.run.run_error import checked, require_on_failure
+from pendcore.scene.scene import SceneData, require_scene
 
 
 def solve(
     kind: type[Result],
     scene: SceneData,
-    q0: npt.ArrayLike | None,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
     qd0: npt.ArrayLike,
-    t_span: Iterable[float] | None,
     options: dict[str, Any],
 ) -> Result:
     """Run, and return the result as one of a class; `options` are used up.
@@ -34,25 +34,29 @@ def solve(
     A short run takes two microseconds, and this function may hardly take more: it calls nothing
     that default options do not need.
     """
-    if q0 is None or not isinstance(scene, SceneData):
-        q0 = require_start(scene, q0)
-    check, error = options.pop("check", None), options.pop("error", None)
-    if check is not None:
-        require_check(check)
+    if not isinstance(scene, SceneData):
+        require_scene(scene)
+    on_failure, error = options.pop("on_failure", "warn"), options.pop("error", None)
+    require_on_failure(on_failure)
     t_start, t_end = two_times(t_span)
     if "events" in options:
         options["events"] = [event._as_pair() for event in events_asked_for(options["events"])]
     if error is not None:
+        require_options(options)
         start = Start(scene, q0, qd0, t_start, t_end)
-        return checked(_solved_to_error(kind, start, error, options), check)
+        return checked(_solved_to_error(kind, start, error, options), on_failure)
     progress = options.pop("progress", None)
     report = ProgressBar() if progress is None else callback(progress)
-    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
+    try:
+        run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn)
+    except TypeError:
+        require_options(options)
+        raise
     result = kind(scene, run)
     if run.success:
         close(report)
         return result
-    return checked(completed(result, report), check)
+    return checked(completed(result, report), on_failure)
 
 
 def result_as(kind: type[Result], result: RunResult) -> Result:
@@ -67,7 +71,7 @@ def _solved_to_error(
     asked = {
         name: options.get(name, option.default)
         for name, option in OPTIONS.items()
-        if not (option.chosen_for_error or option in (CHECK, ERROR))
+        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
     }
     try:
         return result_as(kind, run_to_error(start, error, asked))

@@ -11,16 +11,14 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.messages.arguments import finite_array, known_keywords, text, vector
+from pendcore.messages.arguments import finite_array, text, vector
 from pendcore.run.events import Event, Function, events_asked_for
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
 from pendcore.scene.effect_class import Effect, OwnEffect, Part
-from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.scene import SceneData
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class CaseData:
     """A case without what is built on it; `pendcore.Case` has its parameters and the rest."""
@@ -32,7 +30,6 @@ class CaseData:
     name: str
     options: Mapping[str, Any]
 
-    @known_keywords
     def __init__(
         self,
         *,
@@ -59,7 +56,6 @@ class CaseData:
         object.__setattr__(self, "options", MappingProxyType(given))
 
     @classmethod
-    @known_keywords
     def of_solution(cls, solution: RunResult) -> Self:
         """Return what was asked for when a solution was computed.
 
@@ -78,7 +74,6 @@ class CaseData:
             scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
         )
 
-    @known_keywords
     def to_toml(self) -> str:
         """Return the case as TOML; `pendcore.read_case` makes an equal one of it, to the last bit.
 

@@ -35,7 +35,7 @@ def solution_of(args: argparse.Namespace) -> Solution:
     if args.case is not None and args.case.suffix == ".npz":
         return load_solution(args.case)
     try:
-        return case_of(args).simulate(check=False)
+        return case_of(args).simulate(on_failure="ignore")
     except AccuracyError as refusal:
         if not isinstance(refusal.solution, Solution):
             raise UsageError(str(refusal)) from None

@@ -103,7 +103,7 @@ def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]
     }
     try:
         return accuracy_cost(
-            case.scene, case.q0, case.qd0, case.t_span,
+            case.scene, case.t_span, case.q0, case.qd0,
             methods=None if args.methods is None else args.methods.split(","),
             repeats=args.repeats, time_limit=args.time_limit, name=case.name, **options,
         ), True  # fmt: skip

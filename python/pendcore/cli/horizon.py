@@ -55,7 +55,7 @@ def unasked_horizon(solution: Solution) -> Horizon:
     if solution.stats.nfev > MOST_WORK:
         return Horizon(None, f"not known: second runs take a while; {ask}")
     try:
-        found = horizon_of(solution, solution.error(time_limit=PATIENCE), LIMIT)
+        found = horizon_of(solution, solution.estimate_error(time_limit=PATIENCE), LIMIT)
     except KeyboardInterrupt:
         return Horizon(None, f"not known: interrupted; {ask}")
     except Exception as refusal:  # whatever stops second runs takes nothing from the first

@@ -19,8 +19,8 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.ensemble.figure import Axis, Shown, draw_map, is_wide, new_axes
 from pendcore.ensemble.forbidden import is_forbidden
-from pendcore.ensemble.keep import EnergyDrift, FirstEvent, LargestExponent, Reducer
 from pendcore.ensemble.members import members_of
+from pendcore.ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
 from pendcore.ensemble.refinement import Mask, levels_of, refined
 from pendcore.messages.arguments import Floats
 
@@ -209,8 +209,8 @@ def _run(
         pixels.forbidden += int(np.count_nonzero(~wanted))
     vary = {name: one[wanted] for name, one in vary.items()}
     found = ensemble(
-        case.scene, q0[wanted], qd0[wanted], case.t_span, vary=vary,
-        keep="end" if reducer is None else reducer, workers=args.workers, check=False, **options,
+        case.scene, case.t_span, q0[wanted], qd0[wanted], vary=vary, workers=args.workers,
+        keep="end" if reducer is None else reducer, on_failure="ignore", **options,
     )  # fmt: skip
     for name, count in found.counts().items():
         pixels.counts[name] = pixels.counts.get(name, 0) + count
@@ -222,7 +222,7 @@ def _run(
     else:
         values[wanted] = found[reducer.usual_name]
     if not args.no_trust:
-        other = found.second(workers=args.workers, check=False)
+        other = found.second(workers=args.workers, on_failure="ignore")
         resolved[wanted] = found.resolved(other)
     return values, resolved
 

@@ -15,7 +15,7 @@ from pendcore.cli.usage import UsageError, blamed_on_usage
 _EPILOG = """
 what is told:
   until when every angle is right to the limit, from independent second runs (sol.valid_until)
-  the largest error of the angles and of the positions as far as it is known (sol.error)
+  the largest error of the angles and of the positions as far as it is known (sol.estimate_error)
   the largest Lyapunov exponent, and the seconds that one more right digit is worth (sol.lyapunov)
   the largest torque that would make the run an exact motion (sol.defect)
 
@@ -69,7 +69,7 @@ def trust(
     solution: Solution, limit: float, time_limit: float | None
 ) -> dict[str, tuple[float | None, str]]:
     """Return each number, None where there is none, with a sentence."""
-    estimate = solution.error(time_limit=time_limit)
+    estimate = solution.estimate_error(time_limit=time_limit)
     horizon = horizon_of(solution, estimate, limit)
     found: dict[str, tuple[float | None, str]] = {
         "valid_until": (horizon.valid_until, f"right to {limit:g} rad {horizon.sentence}"),

@@ -271,8 +271,8 @@ class Measurement:
         span = (start.t_start, start.t_end)
         begin = perf_counter()
         solution = simulate(
-            self.scene, start.q0, start.qd0, span, method=one.method, t_eval=times,
-            time_limit=time_limit, check=False, progress=False, **options,
+            self.scene, span, start.q0, start.qd0, method=one.method, t_eval=times,
+            time_limit=time_limit, on_failure="ignore", progress=False, **options,
         )  # fmt: skip
         return solution, perf_counter() - begin
 

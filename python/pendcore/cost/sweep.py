@@ -15,7 +15,6 @@ from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.measurement import Measurement
 from pendcore.messages.arguments import (
     finite_array,
-    known_keywords,
     number,
     text,
     time_limit_of,
@@ -28,7 +27,7 @@ from pendcore.messages.warning import silence, warn
 from pendcore.run.call import Start, atol_beside, forget_inner_runs
 from pendcore.run.methods import methods_named
 from pendcore.run.options import limits_of_every_method, require_options, with_options
-from pendcore.scene.scene import require_start
+from pendcore.scene.scene import require_scene
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""
@@ -37,13 +36,12 @@ TIME_LIMIT = 20.0
 REPEATS = 30
 
 
-@known_keywords
 @with_options(limits_of_every_method)
 def accuracy_cost(
     scene: Scene,
+    t_span: Iterable[float],
     q0: npt.ArrayLike,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] = (),
     *,
     methods: str | Iterable[str] | None = None,
     rtol: npt.ArrayLike = RTOL,
@@ -60,7 +58,7 @@ def accuracy_cost(
 
     Parameters
     ----------
-    scene, q0, qd0, t_span
+    scene, t_span, q0, qd0
         What is run, as in `simulate`. Where double precision cannot follow a chaotic motion to the
         end, the span is cut to where it can, and ``remarks`` says so.
     methods : str or iterable of str, optional
@@ -112,7 +110,7 @@ def accuracy_cost(
     'dop853 at rtol 1e-09'
     """
     require_options(limits, limits_of_every_method)
-    require_start(scene, q0)
+    require_scene(scene)
     n = len(scene.links)
     span = time_span(t_span)
     if span[0] == span[1]:

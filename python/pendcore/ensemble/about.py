@@ -10,8 +10,8 @@ import numpy as np
 from pendcore import _core
 from pendcore.cases.case import CaseData
 from pendcore.cases.case_file import case_from_text
-from pendcore.ensemble import keep
-from pendcore.ensemble.keep import FirstEvent, Reducer
+from pendcore.ensemble import reducers
+from pendcore.ensemble.reducers import FirstEvent, Reducer
 from pendcore.ensemble.request import Request
 from pendcore.messages.arguments import Floats
 from pendcore.messages.warning import silence
@@ -27,7 +27,12 @@ _OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
 """Those that every request has."""
 REDUCERS: dict[str, Callable[..., Reducer]] = {
     kind.__name__: kind
-    for kind in (keep.FirstEvent, keep.Extremes, keep.EnergyDrift, keep.LargestExponent)
+    for kind in (
+        reducers.FirstEvent,
+        reducers.Extremes,
+        reducers.EnergyDrift,
+        reducers.LargestExponent,
+    )
 }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.ensemble.keep import EnergyDrift, FirstEvent
+from pendcore.ensemble.reducers import EnergyDrift, FirstEvent
 from pendcore.ensemble.result import EnsembleResult
 from pendcore.figures.axes import NewFigure, as_drawn, figure_of_pyplot
 from pendcore.messages.arguments import Floats

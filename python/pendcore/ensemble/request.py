@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.ensemble.keep import FirstEvent, LargestExponent, Reducer
+from pendcore.ensemble.reducers import FirstEvent, LargestExponent, Reducer
 from pendcore.messages.arguments import Floats
 from pendcore.run.events import Event
 
@@ -108,4 +108,6 @@ class Request:
         if self.has(LargestExponent):
             for name in ("rtol", "atol"):
                 if np.ndim(self.options[name]) > 0:
-                    raise TypeError(f"{name}: must be one number with pc.keep.LargestExponent()")
+                    raise TypeError(
+                        f"{name}: must be one number with pc.reducers.LargestExponent()"
+                    )

@@ -12,7 +12,7 @@ from pendcore import _core
 from pendcore.ensemble.members import Members
 from pendcore.ensemble.request import Request
 from pendcore.ensemble.states import Quantity, quantity_of_states
-from pendcore.messages.arguments import Floats, known_keywords
+from pendcore.messages.arguments import Floats
 from pendcore.messages.html import table
 from pendcore.run.energy import Energy
 
@@ -103,7 +103,6 @@ class EnsembleResult:
         """Return an array by the name that it has in ``arrays``."""
         return np.asarray(self.arrays[name][...])
 
-    @known_keywords
     def energy(self) -> Energy:
         """Return kinetic, potential and total energy of the kept states, J, each (...).
 
@@ -124,7 +123,6 @@ class EnsembleResult:
         with np.errstate(all="ignore"):  # the energies of a blow-up may be infinite
             return Energy(kinetic, potential, kinetic + potential)
 
-    @known_keywords
     def positions(self) -> Floats:
         """Return pivot, joints and tip of the kept states, m, (..., n+1, 2): x right, y down.
 
@@ -132,7 +130,7 @@ class EnsembleResult:
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=[[0.5, 1.0], [0.6, 1.0]], t_span=(0, 5))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [0.6, 1.0]])
         >>> found.positions()[:, -1].round(3)  # the tips
         array([[1.611, 1.18 ],
                [1.555, 1.163]])
@@ -147,7 +145,7 @@ class EnsembleResult:
 
         Examples
         --------
-        >>> found = pc.ensemble(pc.Scene.textbook(), q0=np.zeros((3, 2)), t_span=(0, 1))
+        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 1), np.zeros((3, 2)))
         >>> found.counts()
         {'finished': 3}
         """

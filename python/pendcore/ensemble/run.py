@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.ensemble.keep import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 from pendcore.ensemble.members import Members
+from pendcore.ensemble.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 from pendcore.ensemble.request import Request
 
 Arrays = Mapping[str, Any]

@@ -1,10 +1,10 @@
 """Which members are resolved: a second, independent ensemble agrees with what they found.
 
 The second ensemble has tolerances a hundredth of the first ones, another method, and constants and
-starts that are some last bits off, as the second runs of `Solution.error` have. Where a motion
-amplifies a last bit to something that can be seen, the two disagree. Where events are looked for,
-Taylor series are kept: at other tolerances they have another order and other steps, and another
-method would take several times as long.
+starts that are some last bits off, as the second runs of `Solution.estimate_error` have. Where a
+motion amplifies a last bit to something that can be seen, the two disagree. Where events are looked
+for, Taylor series are kept: at other tolerances they have another order and other steps, and
+another method would take several times as long.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ import numpy.typing as npt
 from pendcore.accuracy.estimate import TIGHTER
 from pendcore.accuracy.method_choice import TIGHTEST, second_methods
 from pendcore.accuracy.rounding import LAST_BITS, moved
-from pendcore.ensemble.draw import uniform
-from pendcore.ensemble.keep import EnergyDrift, FirstEvent, LargestExponent
 from pendcore.ensemble.members import Members
+from pendcore.ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent
 from pendcore.ensemble.request import Request
 from pendcore.ensemble.result import EnsembleResult
+from pendcore.ensemble.sampling import uniform
 from pendcore.messages.arguments import Floats
 from pendcore.run.call import Choice, Start, run, tightened
 

@@ -12,13 +12,13 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore.accuracy.position_error import time_grid
-from pendcore.messages.arguments import Floats, known_keywords, number, time_span
+from pendcore.messages.arguments import Floats, number, time_span
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.messages.warning import warn
 from pendcore.run.options import RUN_DEFAULTS
 from pendcore.run.result import RunResult
 from pendcore.run.statistics import Statistics
-from pendcore.scene.scene import SceneData, require_start
+from pendcore.scene.scene import SceneData, require_scene
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -55,7 +55,7 @@ class LyapunovExponents:
 
     Examples
     --------
-    >>> found = pc.lyapunov(pc.Scene.textbook(), q0=0.0, t_span=(0, 15), count=1)
+    >>> found = pc.lyapunov(pc.Scene.textbook(), (0, 15), 0.0, count=1)
     >>> found.growth.shape, found.finite_time.shape
     ((201, 1), (201, 1))
     >>> f"an error grows by e in {found.time:.2f} s"
@@ -141,12 +141,11 @@ class LyapunovExponents:
         return lines
 
 
-@known_keywords
 def lyapunov(
     scene: SceneData,
-    q0: npt.ArrayLike | None = None,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] | None = None,
     *,
     count: int | None = None,
     transient: float = 0.0,
@@ -209,13 +208,13 @@ def lyapunov(
 
     Examples
     --------
-    >>> found = pc.lyapunov(pc.Scene.textbook(), q0=0.0, t_span=(0, 15))
+    >>> found = pc.lyapunov(pc.Scene.textbook(), (0, 15), 0.0)
     >>> found.exponents.round(2)  # 1/s
     array([ 1.02,  0.3 , -0.16, -1.2 ])
     >>> f"chaotic: one more right digit is worth {found.seconds_a_digit:.2f} s"
     'chaotic: one more right digit is worth 2.27 s'
     """
-    q0 = require_start(scene, q0)
+    require_scene(scene)
     t_start, t_end = time_span(t_span)
     if t_start == t_end:
         raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
@@ -255,7 +254,7 @@ def lyapunov_of(
     if solution.run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
-        solution.scene, asked["q0"], asked["qd0"], (asked["t_start"], solution.run.t_reached),
+        solution.scene, (asked["t_start"], solution.run.t_reached), asked["q0"], asked["qd0"],
         count=count, transient=transient, rtol=float(np.min(asked["rtol"])),
         atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
         progress=progress,

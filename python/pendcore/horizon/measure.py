@@ -17,12 +17,12 @@ import numpy.typing as npt
 from pendcore.accuracy.estimate import error_estimate
 from pendcore.horizon.horizon_work import HorizonPoint, HorizonWork
 from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore.messages.arguments import known_keywords, numbers, positive, time_limit_of, time_span
+from pendcore.messages.arguments import numbers, positive, time_limit_of, time_span
 from pendcore.messages.progress import Progress, callback, close
 from pendcore.run.call import Choice, Start, atol_beside, forget_inner_runs, run, supports
 from pendcore.run.error_estimate import ErrorEstimate
 from pendcore.run.methods import has_error_estimate, known_methods, methods_named
-from pendcore.scene.scene import SceneData, require_start
+from pendcore.scene.scene import SceneData, require_scene
 
 METHODS = ("dopri5", "dop853", "taylor")
 """The methods that are tried by default, where they support the scene."""
@@ -33,12 +33,11 @@ REPEATS = 5
 """The number of timed runs at each point; the quickest counts."""
 
 
-@known_keywords
 def horizon_work(
     scene: SceneData,
-    q0: npt.ArrayLike | None = None,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
     qd0: npt.ArrayLike = 0.0,
-    t_span: Iterable[float] | None = None,
     *,
     limit: float = 0.1,
     methods: str | Iterable[str] | None = None,
@@ -50,7 +49,7 @@ def horizon_work(
 
     Parameters
     ----------
-    scene, q0, qd0, t_span
+    scene, t_span, q0, qd0
         As in `simulate`. Take a span that is longer than any run stays right: up to thirty
         Lyapunov times.
     limit : float
@@ -80,11 +79,11 @@ def horizon_work(
     Examples
     --------
     >>> scene = pc.Scene.textbook()
-    >>> work = pc.horizon_work(scene, q0=0.0, t_span=(0, 40), methods="taylor", rtols=[1e-3, 1e-9])
+    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=[1e-3, 1e-9])
     >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
     ['1e-03: 8 s', '1e-09: 18 s']
     """
-    q0 = require_start(scene, q0)
+    require_scene(scene)
     start = Start(scene, q0, qd0, *time_span(t_span))
     _check_start(start, "dopri5")
     limit = positive("limit", limit, "rad")
@@ -177,6 +176,6 @@ def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
         return None
     end = start.t_start + np.copysign(longest, start.t_end - start.t_start)
     return lyapunov(
-        start.scene, start.q0, start.qd0, (start.t_start, end), count=1, transient=work.early,
+        start.scene, (start.t_start, end), start.q0, start.qd0, count=1, transient=work.early,
         rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
     )  # fmt: skip

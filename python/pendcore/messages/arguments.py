@@ -7,21 +7,17 @@ ValueError.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from difflib import get_close_matches
-from functools import wraps
-from inspect import Parameter, signature
 from math import inf
 from numbers import Real
 from operator import index
-from typing import Any, ParamSpec, TypeAlias, TypeVar
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-Taken = ParamSpec("Taken")
-Given = TypeVar("Given")
 
 OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
 """Our names of parameters, and those of other programs for them; `_` may be missing."""
@@ -36,68 +32,6 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     near = get_close_matches(name, names, n=1, cutoff=0.55)
     known_ones = f"known are {', '.join(names)}" if names else "there are none"
     return f"did you mean {near[0]!r}?" if near else known_ones
-
-
-def known_keywords(function: Callable[Taken, Given]) -> Callable[Taken, Given]:
-    """Make a function refuse unknown keywords, and suggest the nearest known one."""
-    parameters = signature(function).parameters
-    known = [name for name in parameters if name not in ("self", "cls")]
-    takes_any = any(one.kind is Parameter.VAR_KEYWORD for one in parameters.values())
-
-    @wraps(function)
-    def called(*args: Taken.args, **named: Taken.kwargs) -> Given:
-        try:
-            return function(*args, **named)
-        except TypeError:  # looked at only then: a run of microseconds need not pay for it
-            for name in named:
-                if name not in known and not takes_any:
-                    remedy = did_you_mean(name, known)
-                    owner = _owner(function, args)
-                    raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}") from None
-            if complaint := _call_complaint(function, args, named):
-                raise TypeError(complaint) from None
-            raise
-
-    return called
-
-
-def _call_complaint(
-    function: Callable[..., object], args: tuple[object, ...], named: dict[str, object]
-) -> str:
-    """Return what is wrong with how a function was called; nothing if its own code complained."""
-    various = (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)
-    listed = signature(function).parameters.values()
-    parameters = [x for x in listed if x.kind not in various]
-    takes_more = any(x.kind is Parameter.VAR_POSITIONAL for x in listed)
-    by_place = [one for one in parameters if one.kind is not Parameter.KEYWORD_ONLY]
-    owner = _owner(function, args)
-    own = [one.name for one in parameters if one.name not in ("self", "cls")]
-    given = {one.name for one, _ in zip(by_place, args, strict=False)} | set(named)
-    missing = [one.name for one in parameters if one.default is Parameter.empty]
-    missing = [name for name in missing if name not in given and name in own]
-    if len(args) > len(by_place) and not takes_more:
-        by_name = ", ".join(f"{name}=..." for name in own if name not in given)
-        by_itself = ", ".join(one.name for one in by_place if one.name in own)
-        if by_itself:
-            return f"{owner}: takes {by_itself} by position, and by name: {by_name or 'no more'}"
-        if not own:
-            return f"{owner}: takes nothing: {owner}()"
-        return f"{owner}: takes what it is given by name: {owner}({by_name})"
-    if missing:
-        call = ", ".join(f"{name}=..." for name in own if name in missing or name in given)
-        return f"{owner}: needs {' and '.join(missing)}: {owner}({call})"
-    return ""
-
-
-def _owner(function: Callable[..., object], args: tuple[object, ...]) -> str:
-    """Return what a user calls a function; a method may be inherited."""
-    if "." not in function.__qualname__ or not args:
-        return function.__qualname__
-    owner = args[0] if isinstance(args[0], type) else type(args[0])
-    name = function.__name__
-    if name == "__call__":
-        return owner.__name__.lower()  # what is called is an object
-    return owner.__name__ if name == "__init__" else f"{owner.__name__}.{name}"
 
 
 def number(name: str, value: object, unit: str) -> float:
@@ -156,10 +90,6 @@ def flag(name: str, value: object) -> bool:
 
 def two_times(t_span: Any) -> tuple[Any, Any]:
     """Return what is given as the start and the end of a run; the core checks them as times."""
-    if t_span is None:
-        raise TypeError(
-            "t_span is missing: write t_span=(t_start, t_end), in s; the third argument is qd0"
-        )
     try:
         t_start, t_end = t_span
     except (TypeError, ValueError):

@@ -26,7 +26,7 @@ class PendcoreWarning(UserWarning):
     >>> import warnings
     >>> with warnings.catch_warnings(record=True) as told:
     ...     warnings.simplefilter("always")
-    ...     sol = pc.simulate(pc.Scene.textbook(), q0=[45, 60], t_span=(0, 1))
+    ...     sol = pc.simulate(pc.Scene.textbook(), (0, 1), [45, 60])
     >>> print(told[0].message)
     q0[0] = 45.0 rad: that is 2578 degrees: angles are in radians (numpy.radians converts degrees)
     """

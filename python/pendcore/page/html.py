@@ -35,7 +35,7 @@ WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
 PYTHON_ONLY_KINDS = ("user", "compiled_user")
 """The kinds of effects that only Python has."""
-LEFT_OUT = {"error", "events", "progress", "check"}
+LEFT_OUT = {"error", "events", "progress", "on_failure"}
 """The options of a run that a page does without."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "

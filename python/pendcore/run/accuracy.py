@@ -75,7 +75,7 @@ class Accuracy:
 
     Examples
     --------
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), error=1e-6)
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, error=1e-6)
     >>> sol.accuracy.asked, sol.accuracy.outcome
     (1e-06, 'kept')
     >>> sol.accuracy.achieved <= 1e-6
@@ -179,7 +179,7 @@ class AccuracyError(ArithmeticError):
     Examples
     --------
     >>> try:
-    ...     pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), error=1e-20)
+    ...     pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, error=1e-20)
     ... except pc.AccuracyError as refused:
     ...     print(1e-20 < refused.least < 1e-12, refused.solution.success)
     True True

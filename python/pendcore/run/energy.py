@@ -32,7 +32,7 @@ class Ledger(Mapping[str, Floats]):
     Examples
     --------
     >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
-    >>> sol = pc.simulate(scene, q0=0.5, t_span=(0, 5), ledger=True)
+    >>> sol = pc.simulate(scene, (0, 5), 0.5, ledger=True)
     >>> ledger = sol.energy().ledger
     >>> [*ledger], f"{ledger.viscous[-1]:.3f} J"
     (['viscous', 'residual'], '1.705 J')

@@ -37,7 +37,7 @@ class ErrorEstimate:
 
     Examples
     --------
-    >>> error = pc.Case.textbook().simulate().error()
+    >>> error = pc.Case.textbook().simulate().estimate_error()
     >>> f"{error.largest:.0e} of the length, {error.angle.max():.0e} rad"
     '2e-09 of the length, 5e-09 rad'
     >>> error.valid_until(1e-6)  # s: the end of the run

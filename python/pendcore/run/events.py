@@ -10,11 +10,9 @@ from typing import Any, ClassVar, NoReturn, Self
 import numpy as np
 
 from pendcore import _core
-from pendcore.messages.arguments import Floats, flag, known_keywords, number, numbers, whole_number
-from pendcore.scene.frozen_state import frozen_state
+from pendcore.messages.arguments import Floats, flag, number, numbers, whole_number
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class Event:
     """What every kind of event has.
@@ -33,7 +31,7 @@ class Event:
     Examples
     --------
     >>> bottom = pc.events.LinkAngle(1, np.pi / 2, direction=1, terminal=True, name="bottom")
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[bottom])
     >>> f"{sol.status} at {sol.t[-1]:.3f} s"
     'event at 0.653 s'
     """
@@ -98,7 +96,6 @@ class Event:
 _COMMON = tuple(f.name for f in fields(Event))
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class JointAngle(Event):
     """The angle of a joint, phi_j = q_j - q_{j-1}, passes a value.
@@ -118,7 +115,7 @@ class JointAngle(Event):
     Examples
     --------
     >>> straight = pc.events.JointAngle(2, 0.0, every_turn=True)
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[straight])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[straight])
     >>> sol.events[0].t[:3].round(3)  # s
     array([0.592, 1.008, 1.279])
     """
@@ -132,7 +129,6 @@ class JointAngle(Event):
         self._take_angle(where, "joint")
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class LinkAngle(Event):
     """The absolute angle of a link passes a value.
@@ -151,7 +147,7 @@ class LinkAngle(Event):
     Examples
     --------
     >>> down = pc.events.LinkAngle(link=2, value=np.pi / 2)
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[down])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[down])
     >>> sol.events[0].q[:, 1].round(6)  # rad
     array([1.570796, 1.570796, 1.570796, 1.570796])
     """
@@ -165,7 +161,6 @@ class LinkAngle(Event):
         self._take_angle(where, "link")
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class RateZero(Event):
     """A joint or a link turns back: its rate is zero. A joint that comes to stick is found once.
@@ -180,7 +175,7 @@ class RateZero(Event):
     Examples
     --------
     >>> turn = pc.events.RateZero(link=1)
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[turn])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[turn])
     >>> sol.events[0].t.round(3)  # s
     array([1.195, 2.464, 3.744, 4.957])
     """
@@ -195,7 +190,6 @@ class RateZero(Event):
                 self._set(name, whole_number(where + name, value))
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class TipLine(Event):
     """The tip crosses a straight line: ``normal . (tip - point)`` is zero.
@@ -212,7 +206,7 @@ class TipLine(Event):
     Examples
     --------
     >>> wall = pc.events.TipLine(point=(-1.0, 0.0), normal=(1.0, 0.0))  # x = -1 m
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[wall])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[wall])
     >>> sol.events[0].direction  # it swings to the left through the wall, and back
     array([-1,  1, -1,  1])
     """
@@ -226,7 +220,6 @@ class TipLine(Event):
         self._set("normal", numbers(where + "normal", self.normal, "1", 2))
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, repr=False)
 class Function(Event):
     """A function of one's own passes zero.
@@ -249,7 +242,7 @@ class Function(Event):
     Examples
     --------
     >>> together = pc.events.Function(lambda t, q, qd: qd[0] - qd[1])  # joint 2 is at rest
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[together])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[together])
     >>> [round(event.t, 3) for event in sol.events[0][:2]]  # s
     [0.387, 0.773]
     """
@@ -278,9 +271,6 @@ KINDS: dict[str, type[Event]] = {
     cls.kind: cls for cls in (JointAngle, LinkAngle, RateZero, TipLine, Function)
 }
 """The classes of events by their kind, as in case files."""
-
-for cls in KINDS.values():
-    cls.__init__ = known_keywords(cls.__init__)  # type: ignore[method-assign]
 
 
 def event_of(kind: str, values: Mapping[str, Any]) -> Event:

@@ -30,7 +30,7 @@ class Found:
     Examples
     --------
     >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[bottom])
     >>> first = sol.events[0][0]
     >>> f"t = {first.t:.3f} s, q_1 = {first.q[0]:.4f} rad, {first.direction}"
     't = 0.653 s, q_1 = 1.5708 rad, 1'
@@ -79,7 +79,7 @@ class FoundEvents(list[Found]):
     Examples
     --------
     >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
-    >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), events=[bottom])
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[bottom])
     >>> found = sol.events[0]
     >>> len(found), found.direction, found.qd.shape
     (4, array([ 1, -1,  1, -1]), (4, 2))

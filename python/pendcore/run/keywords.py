@@ -6,12 +6,14 @@ Written by docs/generators/write_options.py from the descriptors of the options.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypedDict
+from typing import Literal, TypeAlias, TypedDict
 
 import numpy.typing as npt
 
 from pendcore.messages.progress import Progress
 from pendcore.run.events import Event
+
+OnFailure: TypeAlias = Literal["warn", "raise", "ignore"]
 
 
 class RunKeywords(TypedDict, total=False):
@@ -31,5 +33,5 @@ class RunKeywords(TypedDict, total=False):
     ledger: bool
     compensated: bool
     error: float | None
-    check: bool | None
+    on_failure: OnFailure
     progress: Progress

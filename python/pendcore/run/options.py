@@ -14,6 +14,7 @@ from textwrap import fill
 from typing import Any, NamedTuple, TypeVar
 
 from pendcore import _core
+from pendcore.messages.arguments import did_you_mean
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -65,12 +66,13 @@ ERROR = RunOption(
     range="> 0 and < 1",
     if_none="no error is verified",
 )
-CHECK = RunOption(
-    "check",
-    "bool | None",
+ON_FAILURE = RunOption(
+    "on_failure",
+    "OnFailure",
     "What to do if the run does not reach its end, or if the time limit is up before the ``error`` "
-    "is verified. True raises a `RunError`, False says nothing: look at ``sol.success`` then.",
-    if_none="a warning",
+    "is verified: warn, raise a `RunError`, or say nothing, and then look at ``sol.success``.",
+    default="warn",
+    type='{"warn", "raise", "ignore"}',
 )
 PROGRESS = RunOption(
     "progress",
@@ -81,7 +83,7 @@ PROGRESS = RunOption(
 )
 OPTIONS = {
     one.name: one
-    for one in (*(RunOption(**one) for one in _core.run_options()), ERROR, CHECK, PROGRESS)
+    for one in (*(RunOption(**one) for one in _core.run_options()), ERROR, ON_FAILURE, PROGRESS)
 }
 """By name, in the order of the signature."""
 RUN_DEFAULTS = {name: option.default for name, option in OPTIONS.items()}
@@ -92,11 +94,16 @@ def limits_of_every_method(option: RunOption) -> bool:
     return option.limits_every_method
 
 
-def require_options(given: Mapping[str, object], wanted: Callable[[RunOption], bool]) -> None:
+def require_options(
+    given: Mapping[str, object], wanted: Callable[[RunOption], bool] = lambda option: True
+) -> None:
     """Raise a TypeError for a keyword that is none of the wanted options."""
+    known = ["scene", "t_span", "q0", "qd0"]
+    known += [name for name, option in OPTIONS.items() if wanted(option)]
     for name in given:
-        if name not in OPTIONS or not wanted(OPTIONS[name]):
-            raise TypeError(f"{name!r} is no option here")
+        if name not in known:
+            remedy = did_you_mean(name, known)
+            raise TypeError(f"no option of a run is called {name!r}: {remedy}")
 
 
 def with_options(

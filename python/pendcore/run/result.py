@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore.messages.arguments import Floats, finite_array, known_keywords, text
+from pendcore.messages.arguments import Floats, finite_array, text
 from pendcore.messages.progress import Progress
 from pendcore.run.accuracy import Accuracy
 from pendcore.run.energy import Energy, energy_over
@@ -100,15 +100,13 @@ class RunResult:
 
         Examples
         --------
-        >>> sol = pc.simulate(
-        ...     pc.Scene.textbook(), q0=0.5, t_span=(0, 9), t_eval=[9.0], max_steps=5, check=False
-        ... )
+        >>> how = {"t_eval": [9.0], "max_steps": 5, "on_failure": "ignore"}
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 9), q0=0.5, **how)
         >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
         (0, '0.5 s', (4,))
         """
         return self.run.y_reached
 
-    @known_keywords
     def __call__(self, t: npt.ArrayLike) -> Floats:
         """State at any time within the run, from the method's own interpolant.
 
@@ -184,7 +182,6 @@ class RunResult:
             )
         return self._events
 
-    @known_keywords
     def events_asked_for(self) -> list[Event]:
         """Return the events that the run looked for.
 
@@ -193,13 +190,12 @@ class RunResult:
         Examples
         --------
         >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
-        >>> sol = pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 1), events=[bottom])
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 1), 0.5, events=[bottom])
         >>> sol.events_asked_for() == [bottom]
         True
         """
         return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
 
-    @known_keywords
     def relative_angles(self) -> Floats:
         """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n).
 
@@ -211,7 +207,6 @@ class RunResult:
         """
         return np.diff(self.q, prepend=0.0)
 
-    @known_keywords
     def accelerations(self) -> Floats:
         """Angular accelerations, rad/s^2, (n_t, n).
 
@@ -223,7 +218,6 @@ class RunResult:
         """
         return self.scene.accelerations(self.t, self.q, self.qd)
 
-    @known_keywords
     def positions(self) -> Floats:
         """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves.
 
@@ -237,7 +231,6 @@ class RunResult:
         """
         return self.scene._compiled.positions(self.t, self.q)
 
-    @known_keywords
     def mass_centers(self) -> Floats:
         """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down.
 
@@ -250,7 +243,6 @@ class RunResult:
         """
         return self.scene._compiled.mass_centers(self.t, self.q)
 
-    @known_keywords
     def reactions(self) -> Floats:
         """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
 
@@ -265,7 +257,6 @@ class RunResult:
         """
         return self.scene._compiled.reactions(self.t, self.q, self.qd)
 
-    @known_keywords
     def energy(self) -> Energy:
         """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept.
 
@@ -278,7 +269,6 @@ class RunResult:
         run = self.run
         return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
 
-    @known_keywords
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
         """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
 

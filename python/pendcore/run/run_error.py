@@ -12,8 +12,11 @@ CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
 functions."""
 
 
+REMEDY = 'on_failure="raise" raises an error, on_failure="ignore" says nothing'
+
+
 class RunError(RuntimeError):
-    """A run was not finished, or not verified in time, and ``check=True`` asked for an exception.
+    """A run was not finished, or not verified in time, and ``on_failure="raise"`` asked for it.
 
     Attributes
     ----------
@@ -23,7 +26,7 @@ class RunError(RuntimeError):
     Examples
     --------
     >>> try:
-    ...     pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 5), max_steps=10, check=True)
+    ...     pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, max_steps=10, on_failure="raise")
     ... except pc.RunError as ended:
     ...     print(ended.solution.status, len(ended.solution.t))
     max_steps 11
@@ -37,23 +40,20 @@ class RunError(RuntimeError):
         return type(self), (str(self), self.solution)
 
 
-def require_check(check: object) -> None:
-    """Raise TypeError for a wrong ``check``, before a run that may take an hour."""
-    if check is not None and not isinstance(check, bool):
-        raise TypeError(
-            f"check = {check!r}: must be None (warn if the run does not get to its end), True "
-            "(raise) or False (say nothing)"
-        )
+def require_on_failure(on_failure: object) -> None:
+    """Raise ValueError for a wrong ``on_failure``, before a run that may take an hour."""
+    if not (isinstance(on_failure, str) and on_failure in ("warn", "raise", "ignore")):
+        raise ValueError(f'on_failure = {on_failure!r}: must be "warn", "raise" or "ignore"')
 
 
-def checked(solution: Result, check: bool | None) -> Result:
-    """Return a solution; unless it is finished and verified, warn or raise as ``check`` says."""
-    if check is False or (solution.success and not why_unverified(solution)):
+def checked(solution: Result, on_failure: str) -> Result:
+    """Return a solution; one that is not finished and verified as ``on_failure`` says."""
+    if on_failure == "ignore" or (solution.success and not why_unverified(solution)):
         return solution
-    if check:
+    if on_failure == "raise":
         raise RunError(_complaint(solution), solution)
     try:
-        warn(f"{_complaint(solution)}; check=True raises an error, check=False says nothing")
+        warn(f"{_complaint(solution)}; {REMEDY}")
     except PendcoreWarning as error:  # where warnings are errors the run is not lost either
         error.solution = solution  # type: ignore[attr-defined]
         raise

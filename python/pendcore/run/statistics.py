@@ -34,7 +34,7 @@ class Statistics(NamedTuple):
     Examples
     --------
     >>> scene = pc.Scene.textbook()
-    >>> stats = pc.simulate(scene, q0=0.5, t_span=(0, 1), method="rk4", step=0.01).stats
+    >>> stats = pc.simulate(scene, (0, 1), 0.5, method="rk4", step=0.01).stats
     >>> stats.accepted, stats.nfev
     (100, 401)
     """

@@ -13,14 +13,13 @@ from typing import Any, Literal
 
 import numpy.typing as npt
 
-from pendcore.messages.arguments import finite_array, known_keywords
+from pendcore.messages.arguments import finite_array
 
 ZEROS = {"hanging": pi / 2, "upright": -pi / 2}
 """The angle ``q`` of a link at which ``theta`` is zero, by the name of that vertical."""
 Zero = Literal["hanging", "upright"]
 
 
-@known_keywords
 def angles_from_vertical(theta: npt.ArrayLike, *, zero: Zero = "hanging") -> Any:
     """Turn angles from a vertical into pendcore's.
 
@@ -58,7 +57,6 @@ def angles_from_vertical(theta: npt.ArrayLike, *, zero: Zero = "hanging") -> Any
     return _at_zero(zero) - finite_array("theta", theta, "rad")
 
 
-@known_keywords
 def angles_to_vertical(q: npt.ArrayLike, *, zero: Zero = "hanging") -> Any:
     """Turn pendcore's angles into angles from a vertical.
 

@@ -16,7 +16,6 @@ from pendcore import _core
 from pendcore.messages.arguments import did_you_mean, flag, in_unit, number, numbers, whole_number
 from pendcore.scene.compiled_function import address
 from pendcore.scene.effect_description import Description, Parameter, docstring, effects, parts
-from pendcore.scene.frozen_state import frozen_state
 
 
 class Described:
@@ -211,7 +210,7 @@ def _class(told: Description, base: type[Any]) -> type[Any]:
         repr=False,
     )
     made.__module__ = "pendcore.effects"  # from Python 3.12 on, make_dataclass enters its caller
-    return frozen_state(made)
+    return made
 
 
 def _bound(told: Description, values: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pendcore.messages.arguments import known_keywords, number
-from pendcore.scene.frozen_state import frozen_state
+from pendcore.messages.arguments import number
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class Link:
     """One rigid link of the chain; a uniform rod unless said otherwise.
@@ -52,7 +50,6 @@ class Link:
     center: float = field(init=False)
     inertia: float = field(init=False)
 
-    @known_keywords
     def __init__(
         self,
         *,
@@ -73,7 +70,6 @@ class Link:
         object.__setattr__(self, "inertia", inertia)
 
     @classmethod
-    @known_keywords
     def point_mass(cls, *, mass: float, length: float) -> Link:
         """All the mass at the tip of a massless rod: the pendulum of many books.
 
@@ -91,7 +87,6 @@ class Link:
         """
         return cls(mass=mass, length=length, center=length, inertia=0.0)
 
-    @known_keywords
     def replace(self, **changes: float | None) -> Link:
         """Return a link of other properties; what is as in a uniform rod stays as in one.
 
@@ -111,7 +106,6 @@ class Link:
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
-    @known_keywords
     def particulars(self) -> dict[str, float]:
         """Return mass, length, and what differs from a uniform rod, enough to make it again.
 

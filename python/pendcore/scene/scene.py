@@ -18,13 +18,11 @@ from pendcore import _core
 from pendcore.messages.arguments import (
     Floats,
     finite_array,
-    known_keywords,
     link_array,
     number,
 )
 from pendcore.messages.warning import warn
 from pendcore.scene.effect_class import Effect
-from pendcore.scene.frozen_state import frozen_state
 from pendcore.scene.link import Link
 from pendcore.scene.parameters import changed
 
@@ -60,7 +58,6 @@ class Mobility(NamedTuple):
     degrees_of_freedom: int
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False, repr=False)
 class SceneData:
     """A scene without what is built on it; `pendcore.Scene` has its parameters and the rest."""
@@ -70,7 +67,6 @@ class SceneData:
     effects: tuple[Effect, ...] = ()
     _compiled: _core.Scene = field(init=False, compare=False)
 
-    @known_keywords
     def __init__(
         self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
     ) -> None:
@@ -93,7 +89,6 @@ class SceneData:
             warn(message)
 
     @classmethod
-    @known_keywords
     def textbook(cls) -> Self:
         """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2.
 
@@ -105,7 +100,6 @@ class SceneData:
         """
         return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
 
-    @known_keywords
     def replace(
         self,
         *,
@@ -134,7 +128,6 @@ class SceneData:
 
     __replace__ = replace  # copy.replace() of Python 3.13
 
-    @known_keywords
     def parameters(self) -> dict[str, float]:
         """Return every number of the scene that has a name, in SI units.
 
@@ -150,7 +143,6 @@ class SceneData:
         """
         return {name: value for name, _, value in _core.parameters(self._compiled)}
 
-    @known_keywords
     def with_parameters(self, values: Mapping[str, float]) -> Self:
         """Return a scene with other values of some parameters; see `parameters` for their names.
 
@@ -175,7 +167,6 @@ class SceneData:
         )
         return type(self)(links=links, gravity=gravity, effects=effects)
 
-    @known_keywords
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
 
@@ -227,7 +218,6 @@ class SceneData:
             np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
         ).reshape(*lead, n)
 
-    @known_keywords
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
@@ -254,7 +244,6 @@ class SceneData:
         q = link_array("q", q, n, "rad")
         return self._compiled.mass_matrix(q.reshape(-1, n)).reshape(*q.shape, n)
 
-    @known_keywords
     def mobility(self) -> Mobility:
         """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``.
 
@@ -309,14 +298,12 @@ def _tuple_of(
     return values
 
 
-def require_start(scene: object, q0: npt.ArrayLike | None) -> npt.ArrayLike:
-    """Return the angles at the start; TypeError unless there are some, and a scene."""
-    if not isinstance(scene, SceneData):
-        told, remedy = f"scene = {scene!r}", ""
-        if isinstance(getattr(scene, "scene", None), SceneData):
-            told = f"scene: is a {type(scene).__name__}"
-            remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
-        raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")
-    if q0 is None:
-        raise TypeError("q0 is missing: give the angles at the start, one per link, in rad")
-    return q0
+def require_scene(scene: object) -> None:
+    """Raise TypeError for anything else."""
+    if isinstance(scene, SceneData):
+        return
+    told, remedy = f"scene = {scene!r}", ""
+    if isinstance(getattr(scene, "scene", None), SceneData):
+        told = f"scene: is a {type(scene).__name__}"
+        remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
+    raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")

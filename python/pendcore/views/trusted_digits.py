@@ -19,7 +19,7 @@ FEWEST, MOST = 2, 6
 def trusted_digits(solution: RunResult, drift: EnergyDrift, most: int = MOST) -> int:
     """Return the number of digits, 2 to 6: by tolerance, energy drift and any verified error.
 
-    It does not hold past the time to which a chaotic run is right: see `Solution.error`.
+    It does not hold past the time to which a chaotic run is right: see `Solution.estimate_error`.
     """
     asked, accuracy = solution.run.arguments, solution.accuracy
     shares = [drift.relative_drift or 0.0]

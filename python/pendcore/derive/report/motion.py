@@ -71,7 +71,7 @@ def _at_times_until(end: float, case: Case, options: dict[str, Any]) -> tuple[So
         options=options | {"t_eval": tuple(times.tolist())},
     )  # fmt: skip
     try:
-        return spread.simulate(check=False), ""
+        return spread.simulate(on_failure="ignore"), ""
     except AccuracyError as refused:
         if refused.solution is None:
             raise

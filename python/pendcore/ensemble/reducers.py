@@ -5,20 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from pendcore.messages.arguments import known_keywords
 from pendcore.run.events import Event
-from pendcore.scene.frozen_state import frozen_state
 
 
 class Reducer:
-    """What makes a number, or a few, of a whole run: one of the classes of `pendcore.keep`.
+    """What makes a number, or a few, of a whole run: one of the classes of `pendcore.reducers`.
 
     The core computes them. For anything else, keep the states at times, or go through the runs of
     `Ensemble.member`.
 
     Examples
     --------
-    >>> isinstance(pc.keep.EnergyDrift(), pc.keep.Reducer)
+    >>> isinstance(pc.reducers.EnergyDrift(), pc.reducers.Reducer)
     True
     """
 
@@ -33,7 +31,6 @@ class Reducer:
         return {}
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True, init=False)
 class FirstEvent(Reducer):
     """The time at which an event first happens, s; NaN where it does not.
@@ -48,7 +45,7 @@ class FirstEvent(Reducer):
     >>> over = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
     >>> found = pc.ensemble(
     ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [-1.2, -0.6]], t_span=(0, 5),
-    ...     keep=pc.keep.FirstEvent(over),
+    ...     keep=pc.reducers.FirstEvent(over),
     ... )
     >>> found["first_event"].round(3)
     array([  nan, 1.343])
@@ -58,7 +55,6 @@ class FirstEvent(Reducer):
     usual_name: ClassVar[str] = "first_event"
     unit: ClassVar[str] = "s"
 
-    @known_keywords
     def __init__(self, event: Event) -> None:
         if not isinstance(event, Event):
             raise TypeError(
@@ -67,7 +63,6 @@ class FirstEvent(Reducer):
         object.__setattr__(self, "event", event)
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True)
 class Extremes(Reducer):
     """The least and the greatest value of each angle, rad, and rate, rad/s, of a run: (2, 2n).
@@ -78,7 +73,7 @@ class Extremes(Reducer):
     Examples
     --------
     >>> found = pc.ensemble(
-    ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 5), keep=pc.keep.Extremes()
+    ...     pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [1.5, 1.5]], keep=pc.reducers.Extremes()
     ... )
     >>> np.ptp(found["extremes"], axis=1).round(2)[:, :2]  # rad, swings of both links
     array([[2.  , 2.67],
@@ -96,7 +91,6 @@ class Extremes(Reducer):
         return {"extreme": ["least", "greatest"], "component": components}
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True)
 class EnergyDrift(Reducer):
     """The largest change of the total energy over the steps of a run, J.
@@ -108,7 +102,7 @@ class EnergyDrift(Reducer):
     --------
     >>> found = pc.ensemble(
     ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 5),
-    ...     keep=pc.keep.EnergyDrift(),
+    ...     keep=pc.reducers.EnergyDrift(),
     ... )
     >>> bool((found["energy_drift"] < 1e-6).all())
     True
@@ -118,7 +112,6 @@ class EnergyDrift(Reducer):
     unit: ClassVar[str] = "J"
 
 
-@frozen_state
 @dataclass(frozen=True, slots=True)
 class LargestExponent(Reducer):
     """The largest finite-time Lyapunov exponent of a run, 1/s; see `pendcore.lyapunov`.
@@ -130,7 +123,7 @@ class LargestExponent(Reducer):
     --------
     >>> found = pc.ensemble(
     ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [1.5, 1.5]], t_span=(0, 15),
-    ...     keep=pc.keep.LargestExponent(),
+    ...     keep=pc.reducers.LargestExponent(),
     ... )
     >>> found["largest_exponent"].round(2)
     array([1.02, 0.11])

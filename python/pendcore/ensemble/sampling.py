@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.messages.arguments import Floats, known_keywords, real_array, whole_number
+from pendcore.messages.arguments import Floats, real_array, whole_number
 
 Size = int | tuple[int, ...]
 
 
-@known_keywords
 def uniform(low: npt.ArrayLike, high: npt.ArrayLike, size: Size, *, seed: int = 0) -> Floats:
     """Draw numbers that are uniform between two bounds.
 
@@ -30,8 +29,8 @@ def uniform(low: npt.ArrayLike, high: npt.ArrayLike, size: Size, *, seed: int = 
 
     Examples
     --------
-    >>> few = pc.draw.uniform(-np.pi, np.pi, (2, 2), seed=1)
-    >>> many = pc.draw.uniform(-np.pi, np.pi, (1000, 2), seed=1)
+    >>> few = pc.sampling.uniform(-np.pi, np.pi, (2, 2), seed=1)
+    >>> many = pc.sampling.uniform(-np.pi, np.pi, (1000, 2), seed=1)
     >>> np.array_equal(few, many[:2])
     True
     """
@@ -40,7 +39,6 @@ def uniform(low: npt.ArrayLike, high: npt.ArrayLike, size: Size, *, seed: int = 
     return low + (high - low) * _shares(size, seed)
 
 
-@known_keywords
 def normal(mean: npt.ArrayLike, deviation: npt.ArrayLike, size: Size, *, seed: int = 0) -> Floats:
     """Draw numbers of a normal distribution.
 
@@ -60,7 +58,7 @@ def normal(mean: npt.ArrayLike, deviation: npt.ArrayLike, size: Size, *, seed: i
 
     Examples
     --------
-    >>> masses = pc.draw.normal(1.0, 0.01, 10_000, seed=7)
+    >>> masses = pc.sampling.normal(1.0, 0.01, 10_000, seed=7)
     >>> f"{masses.mean():.3f} kg, {masses.std():.3f} kg"
     '1.000 kg, 0.010 kg'
     """
