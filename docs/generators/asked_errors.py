@@ -22,11 +22,11 @@ from time import perf_counter
 from typing import Any, TypeAlias
 
 import numpy as np
-from pendcore.accuracy.defect_correction import Way, correction_along
-from pendcore.accuracy.target_error import kept_run
-from pendcore.accuracy.trials import TrialRun, Trials
-from pendcore.run.call import Choice, Start, atol_beside, run, start_of
-from pendcore.run.options import OPTIONS
+from pendcore._accuracy.defect_correction import Way, correction_along
+from pendcore._accuracy.target_error import kept_run
+from pendcore._accuracy.trials import TrialRun, Trials
+from pendcore._run.call import Choice, Start, atol_beside, run, start_of
+from pendcore._run.options import OPTIONS
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]

@@ -166,7 +166,7 @@ def _timed(call: Callable[[], Any]) -> PythonRun[Any]:
 
 def once() -> dict[str, float]:
     """Return the shortest time, s, of what is done once, each in a process of its own."""
-    solve = "import pendcore as pc; pc.simulate(pc.Scene.textbook(), .8, 0, (0, 5))"
+    solve = "import pendcore as pc; pc.simulate(pc.Scene.textbook(), (0, 5), .8)"
     derive = "from pendcore.derive import Derivation; Derivation.textbook().to_octave()"
     commands = {
         "octave": ["octave-cli", "--no-init-file", "--eval", "1;"],

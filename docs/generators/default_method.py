@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from pendcore.accuracy.position_error import distances, time_grid
+from pendcore._accuracy.position_error import distances, time_grid
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]

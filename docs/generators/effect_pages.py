@@ -11,9 +11,9 @@ from math import inf
 
 import pendcore as pc
 from effect_sections import COMPILED, MORE
-from pendcore.run.energy import LOSSES
-from pendcore.scene.effect_class import KINDS, Effect, OwnEffect
-from pendcore.scene.effect_description import CAVEATS, Description
+from pendcore._run.energy import LOSSES
+from pendcore._scene.effect_class import KINDS, Effect, OwnEffect
+from pendcore._scene.effect_description import CAVEATS, Description
 
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",

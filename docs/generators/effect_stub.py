@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pendcore.scene.effect_class import KINDS, PARTS, Described, Effect
-from pendcore.scene.effect_description import Parameter
+from pendcore._scene.effect_class import KINDS, PARTS, Described, Effect
+from pendcore._scene.effect_description import Parameter
 
 HEAD = '''"""What acts on a chain besides gravity: a class for each effect that the core has.
 
@@ -23,9 +23,9 @@ from typing import Any, ClassVar, Final, Literal
 
 import numpy.typing as npt
 
-from pendcore.scene.effect_class import Effect as Effect
-from pendcore.scene.effect_class import OwnEffect, PythonEffect
-from pendcore.scene.effect_class import Part as Part
+from pendcore._scene.effect_class import Effect as Effect
+from pendcore._scene.effect_class import OwnEffect, PythonEffect
+from pendcore._scene.effect_class import Part as Part
 
 def kinds() -> dict[str, type[Effect]]:
     """Return the class of every kind of effect, the kind as in case files."""

@@ -3,7 +3,7 @@
     python docs/generators/error_over_rtol.py bs23
 
 For each rtol it prints the median over 400 random regular scenes, those whose seeds served to
-choose the numbers in `pendcore.accuracy.method_choice`. The descriptor has one number for all.
+choose the numbers in `pendcore._accuracy.method_choice`. The descriptor has one number for all.
 """
 
 from __future__ import annotations

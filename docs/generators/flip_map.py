@@ -23,9 +23,9 @@ import matplotlib as mpl
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
+from pendcore._ensemble.forbidden import is_forbidden
+from pendcore._ensemble.members import members_of
 from pendcore.cost.machine import processor
-from pendcore.ensemble.forbidden import is_forbidden
-from pendcore.ensemble.members import members_of
 from scipy.interpolate import CubicHermiteSpline
 
 ROOT = Path(__file__).parents[2]

@@ -4,8 +4,8 @@
 
 Series of taylor, right-hand sides in the correction of their error and right-hand sides of dop853
 are timed in turns on the same scene, with every effect. The ratios of the times are divided by what
-`series_work` and `correction_work` of `pendcore.accuracy.method_choice` say. The program prints the
-results, and fails if one of them is not within a factor of two. No test measures times;
+`series_work` and `correction_work` of `pendcore._accuracy.method_choice` say. The program prints
+the results, and fails if one of them is not within a factor of two. No test measures times;
 tests/methods/test_series_work.py sees that every kind of effect is measured here.
 """
 
@@ -18,10 +18,10 @@ from time import perf_counter
 from typing import Any
 
 import pendcore as pc
+from pendcore._accuracy.defect_correction import SERIES_8_7, correction_along
 from pendcore._core import DefectCorrection, has_defect_correction
-from pendcore.accuracy.defect_correction import SERIES_8_7, correction_along
-from pendcore.run.call import Choice, Start, atol_beside, run
-from pendcore.run.work import correction_work, series_work
+from pendcore._run.call import Choice, Start, atol_beside, run
+from pendcore._run.work import correction_work, series_work
 
 E = pc.effects
 WAVE = E.Sinusoid(0.5, angular_frequency=3.0)
@@ -112,7 +112,7 @@ def main() -> None:
         cells = " ".join(f"{x:6.2f}" for x in ratios)
         tqdm.write(f"{len(scene.links)} links, {name:24} {cells}{'  <<' * wrong}", file=sys.stdout)
     if beyond:
-        sys.exit(f"pendcore.accuracy.method_choice: a work is wrong in {beyond} scenes (<<)")
+        sys.exit(f"pendcore._accuracy.method_choice: a work is wrong in {beyond} scenes (<<)")
 
 
 if __name__ == "__main__":

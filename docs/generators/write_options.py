@@ -2,7 +2,7 @@
 
     python docs/generators/write_options.py
 
-It writes python/pendcore/run/keywords.py, and the table of `[run]` in docs/how_to/case_files.md. A
+It writes python/pendcore/_run/keywords.py, and the table of `[run]` in docs/how_to/case_files.md. A
 test compares them with what it would write.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from math import inf
 from pathlib import Path
 
-from pendcore.run.options import OPTIONS, RunOption
+from pendcore._run.options import OPTIONS, RunOption
 
 ROOT = Path(__file__).parents[2]
 BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
@@ -34,8 +34,8 @@ from typing import Literal, TypeAlias, TypedDict
 
 import numpy.typing as npt
 
-from pendcore.messages.progress import Progress
-from pendcore.run.events import Event
+from pendcore._messages.progress import Progress
+from pendcore._run.events import Event
 
 OnFailure: TypeAlias = Literal["warn", "raise", "ignore"]
 
@@ -80,7 +80,7 @@ def written() -> dict[Path, str]:
     page = ROOT / "docs/how_to/case_files.md"
     before, rest = page.read_text().split(BEGIN)
     return {
-        ROOT / "python/pendcore/run/keywords.py": keywords(),
+        ROOT / "python/pendcore/_run/keywords.py": keywords(),
         page: before + BEGIN + table() + END + rest.split(END)[1],
     }
 

@@ -31,30 +31,34 @@ from importlib import import_module
 from typing import Any
 
 from pendcore import effects, events, reducers, sampling
+from pendcore._accuracy.defect import Defect
+from pendcore._api.ensemble import ensemble
+from pendcore._api.files import load, read_case
+from pendcore._api.simulate import simulate
+from pendcore._cases.case import Case
 from pendcore._core import __version__
-from pendcore.accuracy.defect import Defect
-from pendcore.api.ensemble import ensemble
-from pendcore.api.ensemble_solution import Ensemble
-from pendcore.api.files import load, read_case
-from pendcore.api.scene import Scene
-from pendcore.api.simulate import simulate
-from pendcore.api.solution import Case, Solution
+from pendcore._ensemble.ensemble import Ensemble
+from pendcore._explanation.explanation import Explanation
+from pendcore._horizon.horizon_work import HorizonWork
+from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
+from pendcore._horizon.measure import horizon_work
+from pendcore._messages.warning import PendcoreWarning
+from pendcore._run.accuracy import Accuracy, AccuracyError
+from pendcore._run.energy import Energy, Ledger
+from pendcore._run.error_estimate import ErrorEstimate
+from pendcore._run.largest_reactions import LargestReaction
+from pendcore._run.run_error import RunError
+from pendcore._run.solution import Solution
+from pendcore._run.statistics import Statistics
+from pendcore._scene.angles import angles_from_vertical, angles_to_vertical
+from pendcore._scene.link import Link
+from pendcore._scene.scene import Mobility, Scene
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.sweep import accuracy_cost
-from pendcore.explanation.explanation import Explanation
-from pendcore.horizon.horizon_work import HorizonWork
-from pendcore.horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore.horizon.measure import horizon_work
-from pendcore.messages.warning import PendcoreWarning
-from pendcore.run.accuracy import Accuracy, AccuracyError
-from pendcore.run.energy import Energy, Ledger
-from pendcore.run.error_estimate import ErrorEstimate
-from pendcore.run.largest_reactions import LargestReaction
-from pendcore.run.run_error import RunError
-from pendcore.run.statistics import Statistics
-from pendcore.scene.angles import angles_from_vertical, angles_to_vertical
-from pendcore.scene.link import Link
-from pendcore.scene.scene import Mobility
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "derive"]
 
 
 def __getattr__(name: str) -> Any:

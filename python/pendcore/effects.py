@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from pendcore.messages.arguments import did_you_mean
-from pendcore.scene.effect_class import KINDS, PARTS, Effect, Part
+from pendcore._messages.arguments import did_you_mean
+from pendcore._scene.effect_class import KINDS, PARTS, Effect, Part
 
 globals().update(PARTS | {cls.__name__: cls for cls in KINDS.values()})
 

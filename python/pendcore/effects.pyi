@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Final, Literal
 
 import numpy.typing as npt
 
-from pendcore.scene.effect_class import Effect as Effect
-from pendcore.scene.effect_class import OwnEffect, PythonEffect
-from pendcore.scene.effect_class import Part as Part
+from pendcore._scene.effect_class import Effect as Effect
+from pendcore._scene.effect_class import OwnEffect, PythonEffect
+from pendcore._scene.effect_class import Part as Part
 
 def kinds() -> dict[str, type[Effect]]:
     """Return the class of every kind of effect, the kind as in case files."""

@@ -12,8 +12,8 @@ found, and what is not.
 
 from __future__ import annotations
 
-from pendcore.run.events import Event, Function, JointAngle, LinkAngle, RateZero, TipLine
-from pendcore.run.found_events import Found, FoundEvents
+from pendcore._run.events import Event, Function, JointAngle, LinkAngle, RateZero, TipLine
+from pendcore._run.found_events import Found, FoundEvents
 
 __all__ = [
     "Event",

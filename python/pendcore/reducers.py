@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from pendcore.ensemble.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
+from pendcore._ensemble.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 
 __all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]

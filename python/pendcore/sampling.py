@@ -6,6 +6,6 @@ a smaller one first. The generator is Philox (Salmon, Moraes, Dror and Shaw, SC1
 
 from __future__ import annotations
 
-from pendcore.ensemble.sampling import normal, uniform
+from pendcore._ensemble.sampling import normal, uniform
 
 __all__ = ["normal", "uniform"]

@@ -11,12 +11,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.position_error import distances, time_grid
+from pendcore._accuracy.position_error import distances, time_grid
+from pendcore._run.call import Start
+from pendcore._run.methods import known_methods, line_style
 from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at
 from pendcore.cost.reference import reference
-from pendcore.run.call import Start
-from pendcore.run.methods import known_methods, line_style
 
 BOOK = pc.Scene.textbook()
 START = ((0, 5), [np.pi / 4, np.pi / 3])

@@ -179,8 +179,7 @@ def test_a_chaotic_span_is_refused_and_told_until_when_it_holds():
         pc.simulate(BOOK, *CHAOTIC, error=1e-3)
     until = caught.value.solution.accuracy.until
     assert 10 < until < 40
-    q0, qd0, _ = CHAOTIC
-    assert pc.simulate(BOOK, q0=q0, qd0=qd0, t_span=(0, 0.6 * until), error=1e-3).accuracy.reached
+    assert pc.simulate(BOOK, (0, 0.6 * until), CHAOTIC[1], error=1e-3).accuracy.reached
 
 
 def test_the_page_says_until_when_it_holds(capsys):
@@ -202,10 +201,9 @@ def test_the_rounding_of_a_late_start_is_told():
 
 
 def test_it_is_refused_as_well_when_no_round_is_left(monkeypatch):
-    monkeypatch.setattr("pendcore.accuracy.target_error.MOST_RUNS", 2)
-    q0, qd0, _ = CHAOTIC
+    monkeypatch.setattr("pendcore._accuracy.target_error.MOST_RUNS", 2)
     with pytest.raises(pc.AccuracyError, match="the search ended after 2 runs") as caught:
-        pc.simulate(BOOK, q0=q0, qd0=qd0, t_span=(0, 10), error=1e-3)
+        pc.simulate(BOOK, (0, 10), CHAOTIC[1], error=1e-3)
     assert not caught.value.solution.accuracy.reached
 
 

@@ -194,7 +194,7 @@ def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
 def test_many_steps_are_added_up_as_a_few_are(monkeypatch: pytest.MonkeyPatch) -> None:
     sol = run(UNEVEN, "dopri5")
     at_once = sol.defect()
-    monkeypatch.setattr("pendcore.accuracy.defect.STEPS_AT_ONCE", 7)
+    monkeypatch.setattr("pendcore._accuracy.defect.STEPS_AT_ONCE", 7)
     fractions: list[float] = []
     in_parts = sol.defect(progress=fractions.append)
     assert np.array_equal(at_once.torque, in_parts.torque)

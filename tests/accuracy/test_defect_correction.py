@@ -8,8 +8,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import _core
-from pendcore.accuracy import defect_correction
-from pendcore.run.call import Choice, Start, atol_beside, run
+from pendcore._accuracy import defect_correction
+from pendcore._run.call import Choice, Start, atol_beside, run
 
 CHAIN = pc.Scene(
     links=[

@@ -198,7 +198,7 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     def pressed(*args: object, **named: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pendcore.horizon.measure.lyapunov", pressed)
+    monkeypatch.setattr("pendcore._horizon.measure.lyapunov", pressed)
     options: dict[str, Any] = {"methods": "dopri5", "rtols": [1e-3, 1e-5, 1e-7]}
     with pytest.raises(KeyboardInterrupt) as raised:
         pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), progress=stop, **options)
@@ -281,7 +281,6 @@ def test_the_lines_of_the_page_run() -> None:
         ({"t_span": (-1.7e308, 1.7e308)}, "t_span = .*: is inf s long: must be below"),
         ({"time_limit": np.nan}, r"time_limit = nan: must be > 0 \(s\)"),
         ({"time_limit": -1}, r"time_limit = -1.0: must be > 0 \(s\)"),
-        ({"rtolls": []}, "did you mean 'rtols'"),
     ],
 )
 def test_bad_arguments_are_named(bad: dict[str, object], message: str) -> None:

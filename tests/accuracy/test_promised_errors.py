@@ -10,8 +10,8 @@ import mpmath
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.position_error import distances, times_within_steps
-from pendcore.accuracy.trials import Trials
+from pendcore._accuracy.position_error import distances, times_within_steps
+from pendcore._accuracy.trials import Trials
 
 BOOK = pc.Scene.textbook()
 DRAG = pc.effects.RodDrag(link=1, drag_coefficient=1.2, diameter=0.02)
@@ -96,7 +96,7 @@ def test_a_trial_is_handed_over_if_the_interrupt_falls_while_runs_are_compared(
     def interrupted(*_: Any) -> Any:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(f"pendcore.accuracy.trials.{estimate}", interrupted)
+    monkeypatch.setattr(f"pendcore._accuracy.trials.{estimate}", interrupted)
     with pytest.raises(KeyboardInterrupt) as stop:
         pc.simulate(scene, q0=[0.7, 1.2], t_span=(0, 10), error=1e-6)
     sol = stop.value.solution  # type: ignore[attr-defined]

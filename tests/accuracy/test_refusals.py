@@ -61,7 +61,7 @@ def test_the_least_error_is_kept(
 def test_no_least_error_is_told_that_no_search_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first search for a least error of this scene is refused, too."""
     how: dict[str, Any] = {"q0": [-1.2, -0.6], "t_span": (0, 12), "error": 1e-9}
-    monkeypatch.setattr("pendcore.accuracy.target_error.MOST_SEARCHES", 1)
+    monkeypatch.setattr("pendcore._accuracy.target_error.MOST_SEARCHES", 1)
     with pytest.raises(pc.AccuracyError, match="reached, but no search kept an error so") as caught:
         pc.simulate(BOOK, **how)
     assert caught.value.least == np.inf
@@ -85,7 +85,7 @@ def test_what_breaks_off_the_search_for_the_least_error_leaves_the_refused_run(
     def searched(*_: Any) -> None:
         raise Stop
 
-    monkeypatch.setattr("pendcore.accuracy.trials.Trials.for_least", searched)
+    monkeypatch.setattr("pendcore._accuracy.trials.Trials.for_least", searched)
     with pytest.raises(Stop) as caught:
         pc.simulate(BOOK, q0=[0.7, 1.0], qd0=0, t_span=(0, 5), error=1e-16)
     accuracy = caught.value.solution.accuracy  # type: ignore[attr-defined]
@@ -95,7 +95,7 @@ def test_what_breaks_off_the_search_for_the_least_error_leaves_the_refused_run(
 
 def test_the_search_for_the_least_error_ends_with_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "pendcore.accuracy.trials.Trials._time_left",
+        "pendcore._accuracy.trials.Trials._time_left",
         lambda runs: np.inf if runs.tries_the_least else 1e-6,
     )
     with pytest.raises(pc.AccuracyError, match="no search kept an error so small") as caught:
@@ -119,7 +119,7 @@ def test_the_command_says_that_a_finished_run_was_not_verified(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "pendcore.accuracy.trials.Trials._time_left", lambda runs: 1e-6 if runs.paid else np.inf
+        "pendcore._accuracy.trials.Trials._time_left", lambda runs: 1e-6 if runs.paid else np.inf
     )
     stick = pc.Case(
         scene=BOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=0.01)]), q0=[0.7, 1.0],

@@ -9,7 +9,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from chaotic_starts import EACH, GRAVITY, T_END, ChaoticStart, chaotic_starts, times
-from pendcore.accuracy import estimate
+from pendcore._accuracy import estimate
 from reference.taylor_series import RodChain, motion
 from reference.trajectories import trajectory
 
@@ -241,7 +241,7 @@ def test_second_runs_may_take_more_steps_than_the_first_was_allowed():
 def test_the_second_runs_are_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
     run = pc.simulate(pc.Scene.textbook(), q0=[1.0, 1.0], t_span=(0, 2))
     first = run.estimate_error()
-    monkeypatch.setattr("pendcore.accuracy.estimate.error_estimate", None)
+    monkeypatch.setattr("pendcore._accuracy.estimate.error_estimate", None)
     assert run.estimate_error() is first
     assert run.valid_until(0.1) == 2.0
     monkeypatch.undo()

@@ -10,7 +10,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore.views.energy_drift import energy_drift
+from pendcore._views.energy_drift import energy_drift
 
 ROD = pc.Link(mass=1.0, length=1.0)
 DAMPED = pc.Scene(

@@ -28,7 +28,7 @@ for n in (1, 2, 3, 7):
     for acting in ([], effects, *([effect] for effect in effects)):
         scene = pc.Scene(links=[rod] * n, effects=acting)
         start = np.linspace(0.5, 1.0, n)
-        pc.simulate(scene, start, 0.0, (0, 0.1), ledger=True)
+        pc.simulate(scene, (0, 0.1), start, ledger=True)
         scene.accelerations(0.0, start, start)
         thirds = [np.longdouble(1) / 3 for _ in range(9)]  # as many as x87 has registers, and one
         assert np.isfinite(thirds).all(), (n, acting)

@@ -49,21 +49,21 @@ tabled = pc.Scene(links=bouncing.links, effects=[
     fx.Motor(1, table=fx.Table((0.0, 0.3, 1.1, 4.0), (0.7, -2.3, 1.9, 0.1)), limit=1.7),
     fx.DrivenPivot(spline=fx.Spline((0.0, 0.7, 1.3, 4.0), (0, 0.1, 0.05, 0.2), (0, 0.03, 0.1, 0)))])
 runs = [
-    pc.simulate(tabled, [0.4, 0.8], 0, (0, 3)),
-    pc.simulate(book, [0.7853981633974483, 1.0471975511965976], 0, (0, 60)),
-    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), rtol=1e-12),
-    pc.simulate(book, [3e8, -2e7], [30, -70], (5, 0)),
-    pc.simulate(rod, -1.2, 0, (0, 30), rtol=1e-6),
-    pc.simulate(floating, [0.3, 0.9], [3e-160, -1e-160], (0, 1e159)),
-    pc.simulate(floating, [0.3, 0.9], [4e-310, -1e-310], (0, 1e-3), atol=0),
-    pc.simulate(book, [-1.4, -1.1], 0, (0, 30), max_step=1e-2, compensated=True),
-    *(pc.simulate(book, [0.8, 1.0], 0, (0, 5), method=method["name"], step=0.01)
+    pc.simulate(tabled, (0, 3), [0.4, 0.8]),
+    pc.simulate(book, (0, 60), [0.7853981633974483, 1.0471975511965976]),
+    pc.simulate(book, (0, 30), [-1.4, -1.1], rtol=1e-12),
+    pc.simulate(book, (5, 0), [3e8, -2e7], [30, -70]),
+    pc.simulate(rod, (0, 30), -1.2, rtol=1e-6),
+    pc.simulate(floating, (0, 1e159), [0.3, 0.9], [3e-160, -1e-160]),
+    pc.simulate(floating, (0, 1e-3), [0.3, 0.9], [4e-310, -1e-310], atol=0),
+    pc.simulate(book, (0, 30), [-1.4, -1.1], max_step=1e-2, compensated=True),
+    *(pc.simulate(book, (0, 5), [0.8, 1.0], method=method["name"], step=0.01)
       for method in _core.methods()),
-    *(pc.simulate(bouncing, [0.4, 0.8], [2, -3], (0, 4), events=events, method=method["name"])
+    *(pc.simulate(bouncing, (0, 4), [0.4, 0.8], [2, -3], events=events, method=method["name"])
       for method in _core.methods() if method["error_order"] and "taylor" not in method["name"]),
-    pc.simulate(stopped, [0.4, 0.8], [2, -3], (0, 4), events=events, method="taylor"),
-    *(pc.simulate(driven, 0.4, 0, (0, 4), method="taylor", rtol=rtol) for rtol in (1e-3, 1e-13)),
-    *(pc.simulate(damped, [0.8, 1.0], 0, (0, 1), events=events, method=method, compensated=True)
+    pc.simulate(stopped, (0, 4), [0.4, 0.8], [2, -3], events=events, method="taylor"),
+    *(pc.simulate(driven, (0, 4), 0.4, method="taylor", rtol=rtol) for rtol in (1e-3, 1e-13)),
+    *(pc.simulate(damped, (0, 1), [0.8, 1.0], events=events, method=method, compensated=True)
       for method in ("radau5", "dopri5-radau5", "dop853-radau5", "taylor-radau5")),
 ]
 print(_core.instruction_set())
@@ -134,7 +134,7 @@ for n in (1, 2, 3):
     for some in ([], effects[:1], effects[: n], effects[: n + 1]):
         scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * n, effects=some[: 2 * n - 1])
         for method in ("dopri5", "radau5"):
-            pc.simulate(scene, 0.8, 0, (0, 0.1), method=method)
+            pc.simulate(scene, (0, 0.1), 0.8, method=method)
         assert np.longdouble(2) * np.longdouble(3) == 6
 """
     environment = os.environ | {"PENDCORE_INSTRUCTION_SET": used}

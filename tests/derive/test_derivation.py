@@ -14,12 +14,12 @@ import numpy.typing as npt
 import pendcore as pc
 import pytest
 import sympy
+from pendcore._scene.effect_description import effects
 from pendcore.derive import Derivation
 from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
 from pendcore.derive.laws.rod_drag import RodDrag
 from pendcore.derive.laws.viscous_joint import ViscousJoint
-from pendcore.scene.effect_description import effects
 from reference.arithmetic import multiple_precision
 from reference.effects import law
 from reference.newton_euler import Body

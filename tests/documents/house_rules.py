@@ -56,24 +56,30 @@ MOST_PUBLIC_HEADERS = 30
 # core below them. The package's own files, the names that users import, are `pendcore` itself.
 PYTHON_LAYERS = [
     "_core",
-    "messages",
-    "scene",
-    "explanation",
-    "run",
-    "accuracy",
-    "horizon",
-    "cases",
-    "views",
-    "figures",
+    "_messages",
+    "_scene",
+    "_explanation",
+    "_run",
+    "_accuracy",
+    "_horizon",
+    "_cases",
+    "_views",
+    "_figures",
     "films",
     "page",
-    "ensemble",
-    "api",
+    "_ensemble",
+    "_api",
     "cost",
     "derive",
     "pendcore",
     "cli",
 ]
+
+# The classes that users hold. Their methods lead to the rooms above, and import them when called.
+HELD_BY_USERS = {
+    f"python/pendcore/{name}.py"
+    for name in ("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble")
+}
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}
 LIBM = (
@@ -197,6 +203,8 @@ def imports_go_down(root: Path) -> Iterator[str]:
         layer = "cli" if module == "pendcore.__main__" else layer_of(module)
         tree = ast.parse(path.read_text())
         for name, where in imports_of(tree):
+            if where and str(place) in HELD_BY_USERS:
+                continue
             if where:
                 yield f"{place} imports {name}{where}"
             if name == "pendcore.(relative)":
@@ -213,8 +221,8 @@ def imports_form_no_circle(root: Path) -> Iterator[str]:
     graph = {
         module: {
             name if name in modules else name.rpartition(".")[0]
-            for name, _ in imports_of(ast.parse(path.read_text()))
-            if layer_of(name) != "_core"
+            for name, where in imports_of(ast.parse(path.read_text()))
+            if not where and layer_of(name) != "_core"
         }
         for module, path in modules.items()
     }
@@ -238,7 +246,8 @@ def files_are_short(root: Path) -> Iterator[str]:
         lines = path.read_text().splitlines()
         lengths[path] = len(lines)
         relative = path.relative_to(root)
-        if len(lines) > 400 and path.suffix != ".pyi":  # a stub is written by a program
+        # A stub is written by a program, and a class that users hold stands in one file.
+        if len(lines) > 400 and path.suffix != ".pyi" and str(relative) not in HELD_BY_USERS:
             yield f"{relative} has {len(lines)} lines: more than 400"
         for number, line in enumerate(lines, start=1):
             if len(line) > 100:

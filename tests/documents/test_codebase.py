@@ -45,32 +45,36 @@ BREACHES = {
     ],
     rules.sources_stand_where_their_headers_do: [],  # two files make the breach: see below
     rules.imports_go_down: [
-        (f"{PACKAGE}/scene/scene.py", "from pendcore.run.result import RunResult", "above it"),
-        (f"{PACKAGE}/run/result.py", "import pendcore.views.table", "above it"),
-        (f"{PACKAGE}/views/table.py", "from pendcore import api", "(views) imports pendcore.api"),
-        (f"{PACKAGE}/cases/case.py", "from pendcore import simulate", "above it"),
+        (f"{PACKAGE}/_scene/scene.py", "from pendcore._run.solution import Solution", "above it"),
+        (f"{PACKAGE}/_run/result.py", "import pendcore._views.table", "above it"),
+        (
+            f"{PACKAGE}/_views/table.py",
+            "from pendcore import _api",
+            "(_views) imports pendcore._api",
+        ),
+        (f"{PACKAGE}/_cases/case.py", "from pendcore import simulate", "above it"),
         (f"{PACKAGE}/__init__.py", "from pendcore.cli import main", "(pendcore) imports"),
         (
-            f"{PACKAGE}/api/solution.py",
-            "def told():\n    from pendcore.views.table import text",
-            "imports pendcore.views.table.text in a function",
+            f"{PACKAGE}/_api/simulate.py",
+            "def told():\n    from pendcore._views.table import text",
+            "imports pendcore._views.table.text in a function",
         ),
         (
-            f"{PACKAGE}/views/table.py",
-            "if TYPE_CHECKING:\n    from pendcore.run.result import RunResult",
+            f"{PACKAGE}/_views/table.py",
+            "if TYPE_CHECKING:\n    from pendcore._run.solution import Solution",
             "for types alone",
         ),
         (
-            f"{PACKAGE}/views/table.py",
-            "class A:\n    if typing.TYPE_CHECKING:\n        import pendcore.scene.link",
+            f"{PACKAGE}/_views/table.py",
+            "class A:\n    if typing.TYPE_CHECKING:\n        import pendcore._scene.link",
             "for types alone",
         ),
-        (f"{PACKAGE}/views/table.py", "from ..run import result", "has a relative import"),
+        (f"{PACKAGE}/_views/table.py", "from .._run import call", "has a relative import"),
         (f"{PACKAGE}/cli/run.py", "x = import_module('pendcore.derive')", "by its name"),
         (f"{PACKAGE}/attic/link.py", "", "attic/link.py is in no layer"),
     ],
     rules.imports_form_no_circle: [
-        (f"{PACKAGE}/run/result.py", "import pendcore.run.result", "a circle of imports"),
+        (f"{PACKAGE}/_run/solution.py", "import pendcore._run.solution", "a circle of imports"),
     ],
     rules.names_say_what_a_file_holds: [
         ("cpp/src/string_utils.cpp", "", "'utils'"),
@@ -190,10 +194,10 @@ def test_what_the_rules_allow_is_no_breach(tmp_path: Path) -> None:
     write(package / "__main__.py", "from pendcore.cli import main")
     write(package / "cli/derive.py", "import pendcore\nfrom pendcore import _core")
     write(
-        package / "views/table.py",
-        "from pendcore.run.result import RunResult\nif TYPE_CHECKING:\n    import matplotlib\n"
+        package / "_views/table.py",
+        "from pendcore._run.solution import Solution\nif TYPE_CHECKING:\n    import matplotlib\n"
         "def plot():\n    import matplotlib",
     )
-    write(package / "run/result.py", "from pendcore import scene\nfrom pendcore.run import call")
-    write(package / "run/call.py", "from pendcore.scene.link import Link")
+    write(package / "_run/result.py", "from pendcore import _scene\nfrom pendcore._run import call")
+    write(package / "_run/call.py", "from pendcore._scene.link import Link")
     assert [found for rule in BREACHES for found in rule(tmp_path)] == []

@@ -14,7 +14,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects
-from pendcore.scene import effect_description
+from pendcore._scene import effect_description
 
 CLASSES = (pc.Case, pc.Ensemble, pc.Link, pc.Scene, pc.Solution)
 """The classes of which every public method has examples, too."""

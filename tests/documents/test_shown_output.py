@@ -43,7 +43,7 @@ def test_pages_that_show_outputs_are_found():
 
 def test_what_ensembles_keep_has_the_names_of_the_page():
     page = (ROOT / "docs/tutorials/many_at_once.md").read_text()
-    rows = re.findall(r"^\| `(pc\.keep\..*?)` \| `found\[\"(.*?)\"\]` \|", page, re.MULTILINE)
+    rows = re.findall(r"^\| `(pc\.reducers\..*?)` \| `found\[\"(.*?)\"\]` \|", page, re.MULTILINE)
     over = pc.events.LinkAngle(2, 0.0)
     kept = {name: eval(call, {"pc": pc, "event": over}) for call, name in rows}
     assert {type(one) for one in kept.values()} == {

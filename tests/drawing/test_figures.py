@@ -8,8 +8,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from matplotlib.figure import Figure
-from pendcore.figures.plot import KINDS, save_figure
-from pendcore.figures.poses import forces_on_links
+from pendcore._figures.plot import KINDS, save_figure
+from pendcore._figures.poses import forces_on_links
 
 
 @pytest.fixture(scope="module")

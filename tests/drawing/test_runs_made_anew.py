@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore._run import dense_output
 from pendcore.page import html
-from pendcore.run import dense_output
 from runs_that_kept_little import BOTTOM, SWINGING, TEXTBOOK, axes, few, places, simulate, stage
 
 

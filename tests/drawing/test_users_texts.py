@@ -8,7 +8,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from matplotlib.figure import Figure
-from pendcore.figures.axes import as_drawn
+from pendcore._figures.axes import as_drawn
 from pendcore.films.stage import Choices, Stage
 
 UNREADABLE = ["Ba$$in", r"$\nonsense$", "$a_{$ b", r"\$ $$"]

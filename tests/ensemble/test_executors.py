@@ -11,7 +11,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.ensemble.distribution import Task, run_task
+from pendcore._ensemble.distribution import Task, run_task
 
 pytestmark = pytest.mark.unsanitized  # processes and a cluster
 

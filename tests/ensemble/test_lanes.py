@@ -104,7 +104,7 @@ import hashlib, numpy as np, pendcore as pc
 q0 = pc.sampling.uniform(-np.pi, np.pi, (200, 2), seed=7)
 for method in {methods}:
     for rtol in (1e-3, 1e-9):
-        found = pc.ensemble(pc.Scene.textbook(), q0, 0.5, (0, 5), method=method, rtol=rtol,
+        found = pc.ensemble(pc.Scene.textbook(), (0, 5), q0, 0.5, method=method, rtol=rtol,
                             workers={workers})
         print(hashlib.sha256(found.q.tobytes() + found.qd.tobytes()).hexdigest())
 """

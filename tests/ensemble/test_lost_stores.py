@@ -10,8 +10,8 @@ from time import monotonic, sleep
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.ensemble import store as store_module
-from pendcore.ensemble.distribution import Task, run_task
+from pendcore._ensemble import store as store_module
+from pendcore._ensemble.distribution import Task, run_task
 from test_store import ASKED, BOOK, STARTS, contents, pool_of
 
 pytest.importorskip("zarr", exc_type=ImportError)

@@ -135,8 +135,8 @@ KILLED = """
 import numpy as np, pendcore as pc, sys
 starts = pc.sampling.uniform(-2, 2, (6, 9, 2), seed=1)
 pc.ensemble(
-    pc.Scene.textbook(), starts, t_span=(0, 2000), store=sys.argv[1], chunk=2, workers=1,
-    check=False,
+    pc.Scene.textbook(), (0, 2000), starts, store=sys.argv[1], chunk=2, workers=1,
+    on_failure="ignore",
 )
 """
 
@@ -232,7 +232,7 @@ how = dict(t_span=(0, 1), store={str(path)!r}, chunk=16)
 def limit(fraction):
     resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))
 try:
-    pc.ensemble(pc.Scene.textbook(), starts, progress=limit, **(how | {{"t_span": (0, 1000)}}))
+    pc.ensemble(pc.Scene.textbook(), q0=starts, progress=limit, **(how | {{"t_span": (0, 1000)}}))
 except OSError as error:
     print(error, error.ensemble.counts())
 """
@@ -258,10 +258,10 @@ def test_memory_is_that_of_the_result():
     script = """
 import resource, numpy as np, pendcore as pc
 scene = pc.Scene.textbook()
-pc.ensemble(scene, [0.1, 0.1], t_span=(0, 1e-3))
+pc.ensemble(scene, (0, 1e-3), [0.1, 0.1])
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 found = pc.ensemble(
-    scene, np.broadcast_to([0.1, 0.1], (1_000_000, 2)), t_span=(0, 1e-3), method="dopri5",
+    scene, (0, 1e-3), np.broadcast_to([0.1, 0.1], (1_000_000, 2)), method="dopri5",
     rtol=1e-3, vary={"gravity": 9.0},
 )
 result = sum(values.nbytes for values in found.arrays.values())

@@ -6,10 +6,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.ensemble.forbidden import is_forbidden
-from pendcore.ensemble.members import members_of
-from pendcore.ensemble.refinement import refined
-from pendcore.ensemble.trust import second
+from pendcore._ensemble.forbidden import is_forbidden
+from pendcore._ensemble.members import members_of
+from pendcore._ensemble.refinement import refined
+from pendcore._ensemble.trust import second
 
 BOOK = pc.Scene.textbook()
 UPRIGHT = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pendcore as pc
-from pendcore.scene.effect_class import OwnEffect
+from pendcore._scene.effect_class import OwnEffect
 
 from fuzz.choices import Choices
 from fuzz.drawn_run import Drawn

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pendcore as pc
 import pytest
-from pendcore.run.methods import known_methods, line_style, most_accurate
+from pendcore._run.methods import known_methods, line_style, most_accurate
 
 METHODS = known_methods()
 

@@ -1,6 +1,6 @@
 """docs/generators/series_work.py measures the cost of a series of taylor with every kind of effect.
 
-An effect that is added must be drawn there, or `pendcore.accuracy.method_choice.series_work` knows
+An effect that is added must be drawn there, or `pendcore._accuracy.method_choice.series_work` knows
 nothing of it. That the forecast grows with the digits, and never falls to nothing, is counted here.
 """
 
@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.run.work import series_work
-from pendcore.scene.effect_class import OwnEffect
+from pendcore._run.work import series_work
+from pendcore._scene.effect_class import OwnEffect
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 from series_work import EFFECTS, NOT_CARRIED, TOGETHER, scenes
@@ -27,7 +27,7 @@ def test_every_kind_of_effect_is_considered():
     assert not missing, (
         f"{missing}: what does a series of taylor cost beside a right-hand side with it? Add "
         "one to EFFECTS of docs/generators/series_work.py, and see by `make asked-errors` that "
-        "series_work in pendcore.accuracy.method_choice.py still holds"
+        "series_work in pendcore._accuracy.method_choice.py still holds"
     )
 
 

@@ -11,8 +11,8 @@ from typing import Any
 import pendcore as pc
 from hypothesis import reject
 from hypothesis import strategies as st
-from pendcore.scene.effect_class import OwnEffect
-from pendcore.scene.effect_description import Description, Parameter
+from pendcore._scene.effect_class import OwnEffect
+from pendcore._scene.effect_description import Description, Parameter
 
 KINDS = {kind: cls for kind, cls in pc.effects.kinds().items() if not issubclass(cls, OwnEffect)}
 """The kinds that can be written down."""

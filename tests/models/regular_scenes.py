@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from pendcore.accuracy.position_error import distances, time_grid
-from pendcore.run.work import series_work
+from pendcore._accuracy.position_error import distances, time_grid
+from pendcore._run.work import series_work
 
 REGULAR = 100.0
 NUDGE = 1e-9

@@ -13,8 +13,8 @@ from typing import Any
 
 import pendcore as pc
 from fuzz.drawn_run import Drawn
-from pendcore.scene.effect_class import Part
-from pendcore.scene.effect_description import Parameter
+from pendcore._scene.effect_class import Part
+from pendcore._scene.effect_description import Parameter
 
 Change = Callable[[str, Parameter, Any, str], Any]
 """From the name of an effect, a parameter, its value and its unit to another value."""

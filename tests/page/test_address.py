@@ -17,8 +17,8 @@ from urllib.parse import quote
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore._run.options import OPTIONS
 from pendcore.page import html
-from pendcore.run.options import OPTIONS
 
 NODE = shutil.which("node")
 HERE = Path(__file__).parent

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.messages.html import drawing
+from pendcore._messages.html import drawing
 from pendcore.page.html import core_for_browsers
 
 

@@ -14,8 +14,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from fuzz.readers import MOST_SECONDS, finding
-from pendcore.cases import case_file
-from pendcore.cases.toml_text import MOST_NESTED
+from pendcore._cases import case_file
+from pendcore._cases.toml_text import MOST_NESTED
 from pendcore.cli import main
 
 BOOK = pc.Case.textbook().to_toml()

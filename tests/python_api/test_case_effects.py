@@ -7,7 +7,7 @@ import re
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore.cases.case_file import EFFECT_KEYS, KEYS
+from pendcore._cases.case_file import EFFECT_KEYS, KEYS
 
 HEAD = "[[link]]\nmass = 1.0\nlength = 1.0\n[[link]]\nmass = 1.0\nlength = 1.0\n"
 TAIL = "[start]\nq = 0.5\n[run]\nt_end = 1.0\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pendcore as pc
 import pytest
-from pendcore.cases.case_file import EVENT_KEYS, KEYS
-from pendcore.run.options import RUN_DEFAULTS
+from pendcore._cases.case_file import EVENT_KEYS, KEYS
+from pendcore._run.options import RUN_DEFAULTS
 
 REFERENCE = (Path(__file__).parents[2] / "docs/how_to/case_files.md").read_text()
 BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)

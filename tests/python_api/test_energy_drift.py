@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.views.energy_drift import energy_drift
+from pendcore._views.energy_drift import energy_drift
 
 SCENE = pc.Scene.textbook()
 

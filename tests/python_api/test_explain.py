@@ -10,9 +10,9 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
+from pendcore._explanation.constraints import constraint_jacobian
+from pendcore._explanation.equilibria import FreeAngles
 from pendcore.cli import main
-from pendcore.explanation.constraints import constraint_jacobian
-from pendcore.explanation.equilibria import FreeAngles
 
 G = 9.807
 ROD = pc.Link(mass=1.0, length=1.0)
@@ -296,7 +296,7 @@ def test_what_is_absent_is_told_and_what_is_present_is_not():
 
 def test_the_summary_of_a_run_tells_the_same():
     scene = rods(2, fx.ViscousJoint(1, 0.1))
-    from pendcore.views.summary import facts, text
+    from pendcore._views.summary import facts, text
 
     found = facts(pc.simulate(scene, q0=1.0, t_span=(0, 1), ledger=True))
     told = scene.explain().to_dict()["not_simulated"]

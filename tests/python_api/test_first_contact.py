@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.accuracy.estimate import error_estimate
+from pendcore._accuracy.estimate import error_estimate
 from pendcore.cli import main
 from pendcore.derive.report import conversion
 
@@ -105,7 +105,7 @@ def test_second_runs_that_nobody_asked_for_are_stopped(
         t = whole.t[whole.t < compared]
         return replace(whole, t=t, **so_far, is_lost=False, is_complete=False)
 
-    monkeypatch.setattr("pendcore.accuracy.estimate.error_estimate", stopped)
+    monkeypatch.setattr("pendcore._accuracy.estimate.error_estimate", stopped)
     case = tmp_path / "chaos.toml"
     case.write_text(CHAOS)
     main(["run", str(case), "-o", str(tmp_path), "--json"])
@@ -272,7 +272,7 @@ def test_one_state_of_plain_numbers_makes_no_arrays_of_rows(
     def no_conversion(*_: object) -> None:
         raise AssertionError("one state went through the checks of many")
 
-    monkeypatch.setattr("pendcore.scene.scene.finite_array", no_conversion)
+    monkeypatch.setattr("pendcore._scene.scene.finite_array", no_conversion)
     for t in (2.0, 2, np.float64(2.0)):
         for of in (np.array, list, tuple):
             one = scene.accelerations(t, of(q), of(qd))

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.messages.progress import ProgressBar
-from pendcore.run.options import OPTIONS, RUN_DEFAULTS
+from pendcore._messages.progress import ProgressBar
+from pendcore._run.options import OPTIONS, RUN_DEFAULTS
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 import write_options
@@ -252,7 +252,7 @@ def test_nothing_is_drawn_where_there_is_no_terminal(progress, capsys):
 def test_on_a_terminal_a_bar_comes_after_a_second(capsys, monkeypatch):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     clock = iter([10.0, 10.9, 11.1])  # when the bar is first called, then as it looks again
-    monkeypatch.setattr("pendcore.messages.progress.monotonic", lambda: next(clock))
+    monkeypatch.setattr("pendcore._messages.progress.monotonic", lambda: next(clock))
     bar = ProgressBar()
     bar(0.2)
     assert capsys.readouterr().err == ""

@@ -51,30 +51,30 @@ def test_a_run_that_does_not_get_to_its_end_warns_of_status_time_and_remedy(stat
     assert f"t = {sol.run.t_reached!r} s" in said
     assert sol.message.removeprefix(f"{status}: ") in said
     assert ("resume" in said) == (status in ("max_steps", "time_limit", "max_turns"))
-    assert "check=True" in said
+    assert 'on_failure="raise"' in said
     assert warning.filename == __file__  # the user's own line
 
 
 @pytest.mark.parametrize("status", UNFINISHED)
-def test_with_check_it_raises_and_has_the_run_so_far(status: str) -> None:
+def test_a_failure_that_raises_has_the_run_so_far(status: str) -> None:
     with pytest.raises(pc.RunError, match=f"with status {status}: ") as end:
         pc.simulate(**UNFINISHED[status], on_failure="raise")
     assert end.value.solution.status == status
-    assert "check=" not in str(end.value)
+    assert "on_failure" not in str(end.value)
 
 
 @pytest.mark.parametrize("status", UNFINISHED)
-def test_without_check_it_says_nothing(status: str) -> None:
+def test_a_failure_that_is_ignored_says_nothing(status: str) -> None:
     assert pc.simulate(**UNFINISHED[status], on_failure="ignore").status == status
 
 
-@pytest.mark.parametrize("check", [None, True, False])
-def test_a_run_that_gets_to_its_end_is_returned(check: bool | None) -> None:
-    sol = pc.simulate(BOOK, **START, check=check)
+@pytest.mark.parametrize("what", ["warn", "raise", "ignore"])
+def test_a_run_that_gets_to_its_end_is_returned(what: Any) -> None:
+    sol = pc.simulate(BOOK, **START, on_failure=what)
     assert sol.success
-    assert sol.resume(6, check=check).success
+    assert sol.resume(6, on_failure=what).success
     ends = [pc.events.LinkAngle(1, 1.0, terminal=True)]
-    assert pc.simulate(BOOK, **START, events=ends, check=check).status == "event"
+    assert pc.simulate(BOOK, **START, events=ends, on_failure=what).status == "event"
 
 
 def test_a_fit_does_not_take_a_shorter_run_for_the_whole() -> None:
@@ -126,7 +126,7 @@ def test_an_error_of_a_run_pickles_with_the_run() -> None:
     assert np.array_equal(again.solution.y, end.value.solution.y)
 
 
-def test_a_case_has_its_own_check_and_whoever_runs_it_another() -> None:
+def test_a_case_says_what_failure_does_and_whoever_runs_it_another() -> None:
     options = {"max_steps": 5, "on_failure": "raise"}
     case = pc.Case(scene=BOOK, **START, name="short", options=options)
     assert pc.read_case(case.to_toml()) == case
@@ -138,26 +138,27 @@ def test_a_case_has_its_own_check_and_whoever_runs_it_another() -> None:
     with pytest.warns(pc.PendcoreWarning, match="with status max_steps"):
         again = warned.simulate().case()
     assert again.options["max_steps"] == 5
-    assert "check" not in again.options
+    assert "on_failure" not in again.options
     with pytest.raises(pc.RunError):
         warned.simulate(on_failure="raise")
 
 
-@pytest.mark.parametrize("check", ["yes", 1, 0, np.nan])
-def test_what_is_no_check_is_refused_before_anything_is_run(check: Any) -> None:
-    message = rf"^check = {re.escape(repr(check))}: must be None \(warn.*, True .*or False"
+@pytest.mark.parametrize("wrong", ["yes", True, None, np.nan])
+def test_a_wrong_on_failure_is_refused_before_anything_is_run(wrong: Any) -> None:
+    message = rf'^on_failure = {re.escape(repr(wrong))}: must be "warn", "raise" or "ignore"$'
     endless = {"t_span": (0, 1e12), "store": "end"}
-    with pytest.raises(TypeError, match=message):
-        pc.simulate(BOOK, q0=0.3, **endless, check=check)
-    with pytest.raises(TypeError, match=message):
-        pc.simulate(BOOK, q0=0.3, t_span=(0, 1)).resume(1e12, check=check)
-    case = pc.Case(scene=BOOK, q0=0.3, t_span=(0, 1e12), options={"check": check})
-    for asked in (None, False):
-        with pytest.raises(TypeError, match=message):
-            case.simulate(check=asked)
+    with pytest.raises(ValueError, match=message):
+        pc.simulate(BOOK, q0=0.3, **endless, on_failure=wrong)
+    with pytest.raises(ValueError, match=message):
+        pc.simulate(BOOK, (0, 1), 0.3).resume(1e12, on_failure=wrong)
+    if wrong is not None:
+        case = pc.Case(scene=BOOK, q0=0.3, t_span=(0, 1e12), options={"on_failure": wrong})
+        for asked in (None, "ignore"):
+            with pytest.raises(ValueError, match=message):
+                case.simulate(on_failure=asked)
 
 
-@pytest.mark.parametrize("asked", ["", "check = true\n", "check = false\n"])
+@pytest.mark.parametrize("asked", ["", 'on_failure = "raise"\n', 'on_failure = "ignore"\n'])
 def test_the_command_says_it_once_and_writes_what_there_is(
     asked: str, tmp_path: Path, monkeypatch: Any, capsys: Any
 ) -> None:
@@ -170,13 +171,13 @@ def test_the_command_says_it_once_and_writes_what_there_is(
     assert pc.load("out/short/solution.npz").status == "max_steps"
 
 
-def test_a_wrong_check_in_a_case_file_is_told_with_its_line(
+def test_a_wrong_on_failure_in_a_case_file_is_told_with_its_line(
     tmp_path: Path, monkeypatch: Any, capsys: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("odd.toml").write_text(pc.Case.textbook().to_toml() + 'check = "yes"\n')
+    Path("odd.toml").write_text(pc.Case.textbook().to_toml() + 'on_failure = "yes"\n')
     assert main(["run", "odd.toml"]) == 2
-    assert re.search(r"odd\.toml, line \d+: check = 'yes': must be", capsys.readouterr().err)
+    assert re.search(r"odd\.toml, line \d+: on_failure = 'yes': must be", capsys.readouterr().err)
 
 
 def test_of_a_run_that_kept_no_time_the_way_that_it_went_is_drawn() -> None:

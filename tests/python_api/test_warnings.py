@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.messages.warning import _VALUE
+from pendcore._messages.warning import _VALUE
 
 HEAVY = 123456.0
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.cases.whole_file import whole_file
+from pendcore._cases.whole_file import whole_file
 from pendcore.cli import main
 
 BOOK = pc.Case.textbook()

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from pendcore import _core
+from pendcore._messages.warning import PendcoreWarning
 from pendcore.cli import completion, cost, derive, explain, map, plot, run, show, trust
 from pendcore.cli.surroundings import make_surroundings_safe
 from pendcore.cli.usage import NotWritten, UsageError
 from pendcore.cli.words import known_words
-from pendcore.messages.warning import PendcoreWarning
 
 _EXAMPLES = """
 examples:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from pendcore.api.files import read_case
-from pendcore.api.solution import Case
+from pendcore._api.files import read_case
+from pendcore._cases.case import Case
 
 
 def add_case_and_folder(parser: argparse.ArgumentParser) -> None:

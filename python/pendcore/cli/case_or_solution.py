@@ -6,11 +6,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from pendcore.api.files import load_solution
-from pendcore.api.solution import Solution
+from pendcore._api.files import load_solution
+from pendcore._run.accuracy import AccuracyError
+from pendcore._run.solution import Solution
 from pendcore.cli.case_and_folder import case_of
 from pendcore.cli.usage import UsageError
-from pendcore.run.accuracy import AccuracyError
 
 
 def add_case_or_solution(parser: argparse.ArgumentParser) -> None:

@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from pendcore._messages.warning import warn
 from pendcore.cli.case_and_folder import case_of
 from pendcore.cli.usage import blamed_on_usage
-from pendcore.messages.warning import warn
 
 _EPILOG = """
 what is told:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pendcore.cases.whole_file import whole_file
+from pendcore._cases.whole_file import whole_file
 from pendcore.cli.usage import NotWritten, written
 
 

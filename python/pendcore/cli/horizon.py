@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from pendcore.api.solution import Solution
-from pendcore.run.error_estimate import ErrorEstimate
+from pendcore._run.error_estimate import ErrorEstimate
+from pendcore._run.solution import Solution
 
 LIMIT = 0.1
 """rad; a run counts as right until the error of an angle passes it."""

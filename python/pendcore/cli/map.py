@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from pendcore.api.ensemble import ensemble
-from pendcore.api.files import read_case
-from pendcore.api.solution import Case
-from pendcore.cases.map_table import MapAxis, MapTable, read_map_table
+from pendcore._api.ensemble import ensemble
+from pendcore._api.files import read_case
+from pendcore._cases.case import Case
+from pendcore._cases.map_table import MapAxis, MapTable, read_map_table
+from pendcore._ensemble.figure import Axis, Shown, draw_map, is_wide, new_axes
+from pendcore._ensemble.forbidden import is_forbidden
+from pendcore._ensemble.members import members_of
+from pendcore._ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
+from pendcore._ensemble.refinement import Mask, levels_of, refined
+from pendcore._messages.arguments import Floats
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
-from pendcore.ensemble.figure import Axis, Shown, draw_map, is_wide, new_axes
-from pendcore.ensemble.forbidden import is_forbidden
-from pendcore.ensemble.members import members_of
-from pendcore.ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
-from pendcore.ensemble.refinement import Mask, levels_of, refined
-from pendcore.messages.arguments import Floats
 
 _EPILOG = """
 the case has a table

@@ -8,20 +8,21 @@ import re
 import sys
 from typing import Any
 
-from pendcore.api.solution import Case, Solution
-from pendcore.cases.archive import save
-from pendcore.cases.case_file import with_line
+from pendcore._cases.archive import save
+from pendcore._cases.case import Case
+from pendcore._cases.case_file import with_line
+from pendcore._figures.plot import save_figure
+from pendcore._run.accuracy import AccuracyError
+from pendcore._run.run_error import CAN_GO_ON, why_unverified
+from pendcore._run.solution import Solution
+from pendcore._views.export import write_csv
+from pendcore._views.summary import facts, text
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.parameters import with_parameters
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cli.words import CHOSEN_FOR_ERROR
-from pendcore.figures.plot import save_figure
-from pendcore.run.accuracy import AccuracyError
-from pendcore.run.run_error import CAN_GO_ON, why_unverified
-from pendcore.views.export import write_csv
-from pendcore.views.summary import facts, text
 
 _EPILOG = """
 what is written into the folder:

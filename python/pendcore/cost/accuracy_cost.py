@@ -10,10 +10,10 @@ from math import inf, isfinite
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
-from pendcore.cases.whole_file import whole_file
+from pendcore._cases.whole_file import whole_file
+from pendcore._messages.arguments import number
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
-from pendcore.messages.arguments import number
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D

@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
-from pendcore.api.scene import Scene
-from pendcore.api.simulate import simulate
+from pendcore._api.simulate import simulate
+from pendcore._messages.arguments import Floats
+from pendcore._run.call import Choice, Start, run, supports
+from pendcore._run.methods import has_error_estimate, known_methods, pair_of
+from pendcore._run.solution import Solution
+from pendcore._scene.scene import Scene
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
-from pendcore.messages.arguments import Floats
-from pendcore.run.call import Choice, Start, run, supports
-from pendcore.run.methods import has_error_estimate, known_methods, pair_of
-from pendcore.run.result import RunResult
 
 # A third of the time limit is for the reference and a third for single runs; the rest for repeats.
 SHARE = 1 / 3
@@ -260,7 +260,7 @@ class Measurement:
                 f"than {self.time_limit:.3g} s gives more"
             )
 
-    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[RunResult, float]:
+    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[Solution, float]:
         """Make the call that is timed."""
         start, times = self.start, self._times()
         options = (

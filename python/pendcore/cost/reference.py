@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendcore.accuracy.method_choice import TIGHTEST, TIGHTEST_IMPLICIT
-from pendcore.accuracy.position_error import angles_at, distances, reached, time_grid
-from pendcore.messages.arguments import Floats
-from pendcore.run.call import Choice, Start, atol_beside, run, supports
-from pendcore.run.methods import implicit_method, methods_of, most_accurate, pair_of
-from pendcore.run.result import RunResult
+from pendcore._accuracy.method_choice import TIGHTEST, TIGHTEST_IMPLICIT
+from pendcore._accuracy.position_error import angles_at, distances, reached, time_grid
+from pendcore._messages.arguments import Floats
+from pendcore._run.call import Choice, Start, atol_beside, run, supports
+from pendcore._run.methods import implicit_method, methods_of, most_accurate, pair_of
+from pendcore._run.solution import Solution
 
 # In a stiff scene an implicit method comes first.
 REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
@@ -44,8 +44,8 @@ class TooFarError(ValueError):
 class Reference(NamedTuple):
     """Two runs, the times on which they are compared (n_t,), s, and how far apart they are."""
 
-    first: RunResult
-    second: RunResult
+    first: Solution
+    second: Solution
     times: Floats
     apart: Floats
 
@@ -54,7 +54,7 @@ class Reference(NamedTuple):
         """The largest distance of the two, as a share of the total length."""
         return float(self.apart.max())
 
-    def error_of(self, solution: RunResult) -> float:
+    def error_of(self, solution: Solution) -> float:
         """Return the largest distance of a run from the reference run by another method."""
         kin = methods_of(solution.method)
         other = self.second if self.first.method in kin else self.first
@@ -84,7 +84,7 @@ def reference(
         If no two methods get beyond the first of the times; it says why.
     """
     times = time_grid(start.t_start, start.t_end, points)
-    runs: list[RunResult] = []
+    runs: list[Solution] = []
     until = monotonic() + time_limit
     for choice in _choices(start, stiff):
         left = max(until - monotonic(), 1e-3) / 2
@@ -119,13 +119,13 @@ def _choices(start: Start, stiff: bool) -> Iterator[Choice]:
             yield Choice(method, rtol, atol_beside(rtol), compensated=True)
 
 
-def _compared(runs: list[RunResult], times: Floats) -> Reference:
+def _compared(runs: list[Solution], times: Floats) -> Reference:
     first, second = runs
     count = len(times)
     apart = distances(first.scene, first.q[:count], second.q[:count])
     return Reference(first, second, times, np.where(np.isnan(apart), inf, apart))
 
 
-def _text(solution: RunResult) -> str:
+def _text(solution: Solution) -> str:
     asked = solution.run.arguments
     return f"{solution.method} at rtol {float(asked['rtol']):.0e}, compensated"

@@ -9,11 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore.accuracy.position_error import POINTS
-from pendcore.api.scene import Scene
-from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.measurement import Measurement
-from pendcore.messages.arguments import (
+from pendcore._accuracy.position_error import POINTS
+from pendcore._messages.arguments import (
     finite_array,
     number,
     text,
@@ -22,12 +19,14 @@ from pendcore.messages.arguments import (
     vector,
     whole_number,
 )
-from pendcore.messages.progress import Progress, callback, close
-from pendcore.messages.warning import silence, warn
-from pendcore.run.call import Start, atol_beside, forget_inner_runs
-from pendcore.run.methods import methods_named
-from pendcore.run.options import limits_of_every_method, require_options, with_options
-from pendcore.scene.scene import require_scene
+from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.warning import silence, warn
+from pendcore._run.call import Start, atol_beside, forget_inner_runs
+from pendcore._run.methods import methods_named
+from pendcore._run.options import limits_of_every_method, require_options, with_options
+from pendcore._scene.scene import Scene, require_scene
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.measurement import Measurement
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from sympy import Expr, Integer, Matrix, Symbol
 
-from pendcore.api.scene import Scene
+from pendcore._scene.scene import Scene
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.energy import Energy
 from pendcore.derive.laws import laws_of

@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 from pathlib import Path
 
-from pendcore.api.scene import Scene
-from pendcore.api.solution import Case
+from pendcore._cases.case import Case
+from pendcore._messages.progress import Progress
+from pendcore._scene.scene import Scene
 from pendcore.derive import narration
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.code import cpp, octave, python
 from pendcore.derive.report import write_report
 from pendcore.derive.step import Step
-from pendcore.messages.progress import Progress
 
 
 class Derivation(Algebra):

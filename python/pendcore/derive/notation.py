@@ -12,7 +12,7 @@ from typing import Any
 
 from sympy import Expr, Rational, Symbol
 
-from pendcore.api.scene import Scene
+from pendcore._scene.scene import Scene
 from pendcore.derive.writing import (
     ACCELERATION,
     ANGLE,

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pendcore.figures.axes import figure_of_pyplot
+from pendcore._figures.axes import figure_of_pyplot
+from pendcore._run.solution import Solution
 from pendcore.films.stage import Choices, Stage
-from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
 
 
-def animate(
-    solutions: Sequence[RunResult], names: Sequence[str], choices: Choices
-) -> FuncAnimation:
+def animate(solutions: Sequence[Solution], names: Sequence[str], choices: Choices) -> FuncAnimation:
     """Return an animation; it must be kept as long as it is to move."""
     from matplotlib.animation import FuncAnimation
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pendcore.messages.arguments import Floats, positive
-from pendcore.run.dense_output import with_dense_output
-from pendcore.run.result import RunResult
+from pendcore._messages.arguments import Floats, positive
+from pendcore._run.dense_output import with_dense_output
+from pendcore._run.solution import Solution
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
@@ -48,7 +48,7 @@ class Moves:
     total_length: float
 
 
-def frame_times(solutions: Sequence[RunResult], fps: float, speed: float) -> Floats:
+def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floats:
     """Return the times of the frames, s: those of the longest run, at `speed` times true time."""
     rate = positive("fps", fps, "1/s")
     faster = positive("speed", speed, "")
@@ -68,7 +68,7 @@ def frame_times(solutions: Sequence[RunResult], fps: float, speed: float) -> Flo
     return times
 
 
-def moves_of(solution: RunResult, times: Floats) -> Moves:
+def moves_of(solution: Solution, times: Floats) -> Moves:
     """Return where a run is at the times of frames; it stays where it ends."""
     solution = with_dense_output(solution)
     start, end = float(solution.run.arguments["t_start"]), solution.run.t_reached

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.figures.axes import horizon_time, in_legend, in_plane
-from pendcore.figures.over_time import draw_energies
+from pendcore._figures.axes import horizon_time, in_legend, in_plane
+from pendcore._figures.over_time import draw_energies
+from pendcore._messages.arguments import Floats, number, positive
+from pendcore._run.dense_output import with_dense_output
+from pendcore._run.solution import Solution
 from pendcore.films.frames import Moves, frame_times, moves_of
-from pendcore.messages.arguments import Floats, number, positive
-from pendcore.run.dense_output import with_dense_output
-from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -53,7 +53,7 @@ class Stage:
     """
 
     def __init__(
-        self, solutions: Sequence[RunResult], figure: Figure, choices: Choices, names: Sequence[str]
+        self, solutions: Sequence[Solution], figure: Figure, choices: Choices, names: Sequence[str]
     ) -> None:
         self.figure = figure
         self.times = frame_times(solutions, choices.fps, choices.speed)
@@ -186,7 +186,7 @@ def _frame_scene(axis: Axes, moves: Sequence[Moves], scale: float) -> None:
     axis.plot(*pivots.T, "^", color="0.5", markersize=9, zorder=1, linestyle="")
 
 
-def _last_right_frame(solution: RunResult, times: Floats, choices: Choices) -> int:
+def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> int:
     if choices.horizon is not None:
         positive("horizon", choices.horizon, "rad")
     valid = horizon_time(solution, choices.horizon)
@@ -196,7 +196,7 @@ def _last_right_frame(solution: RunResult, times: Floats, choices: Choices) -> i
     return int(np.argmax(past)) - 1 if past.any() else len(times)
 
 
-def _energy_strip(axis: Axes, solution: RunResult) -> Line2D:
+def _energy_strip(axis: Axes, solution: Solution) -> Line2D:
     """Draw the energies over time, and return the line that moves along."""
     draw_energies(solution, axis)
     return axis.axvline(float(solution.run.arguments["t_start"]), color="0.2", linewidth=1.0)

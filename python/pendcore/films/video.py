@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.cases.whole_file import whole_file
+from pendcore._cases.whole_file import whole_file
+from pendcore._messages.arguments import whole_number
+from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.warning import warn
+from pendcore._run.solution import Solution
 from pendcore.films.stage import Choices, Stage
-from pendcore.messages.arguments import whole_number
-from pendcore.messages.progress import Progress, callback, close
-from pendcore.messages.warning import warn
-from pendcore.run.result import RunResult
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -36,7 +36,7 @@ _GIF_TICK = 10
 
 
 def to_video(
-    solutions: Sequence[RunResult],
+    solutions: Sequence[Solution],
     names: Sequence[str],
     path: str | os.PathLike[str],
     choices: Choices,

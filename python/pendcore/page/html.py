@@ -14,16 +14,16 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
-from pendcore.accuracy.estimate import error_of
-from pendcore.cases.case import CaseData
+from pendcore._accuracy.estimate import error_of
+from pendcore._cases.case import Case
+from pendcore._messages.arguments import text
+from pendcore._run.call import Choice, run, start_of
+from pendcore._run.dense_output import with_dense_output
+from pendcore._run.methods import known_methods
+from pendcore._run.options import OPTIONS
+from pendcore._run.solution import Solution
+from pendcore._scene.effect_class import KINDS, PARTS
 from pendcore.films.frames import moves_of
-from pendcore.messages.arguments import text
-from pendcore.run.call import Choice, run, start_of
-from pendcore.run.dense_output import with_dense_output
-from pendcore.run.methods import known_methods
-from pendcore.run.options import OPTIONS
-from pendcore.run.result import RunResult
-from pendcore.scene.effect_class import KINDS, PARTS
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
@@ -55,12 +55,12 @@ _EXPORT = re.compile(
 )
 
 
-def page_of(solution: RunResult, title: str | None = None) -> str:
+def page_of(solution: Solution, title: str | None = None) -> str:
     """Return the page; without a core for browsers in the install, it plays the run back.
 
     ``title`` is the headline; without one, the page has the name of the run.
     """
-    case = CaseData.of_solution(solution)
+    case = Case.of_solution(solution)
     scene = solution.scene
     own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
     has_events = bool(solution.run.arguments["events"])
@@ -94,7 +94,7 @@ def page_of(solution: RunResult, title: str | None = None) -> str:
     return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], _source("page.html"))
 
 
-def _horizon(solution: RunResult, *, may_take_long: bool) -> float | None:
+def _horizon(solution: Solution, *, may_take_long: bool) -> float | None:
     """Return until when the run is right, s; None leaves it to the page to find out."""
     estimate = solution.known_error
     if estimate is None:
@@ -123,7 +123,7 @@ def _bundle(names: tuple[str, ...]) -> str:
     return "\n".join(_EXPORT.sub("", _IMPORT.sub("", _source(name))) for name in names)
 
 
-def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
+def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
     start = solution.run.arguments
     # The page knows no events: its run ends where one ended this run, before some times to keep.
@@ -153,7 +153,7 @@ def _plain_case(case: CaseData, solution: RunResult) -> dict[str, Any]:
     }
 
 
-def _method(solution: RunResult) -> str:
+def _method(solution: Solution) -> str:
     """Return the method of a run, or "auto" where that takes the same: it goes on to do so."""
     asked = solution.run.arguments
     of_no_length = start_of(solution)._replace(t_end=asked["t_start"])
@@ -210,7 +210,7 @@ def _parameters(value: Any) -> dict[str, Any]:
     return found
 
 
-def _recording(solution: RunResult) -> dict[str, Any]:
+def _recording(solution: Solution) -> dict[str, Any]:
     """Return the run at equal steps of time, for a page that only plays back."""
     solution = with_dense_output(solution)
     begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached

@@ -12,17 +12,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pendcore import _core
-from pendcore.api.solution import Case, Solution
-from pendcore.cases.whole_file import whole_file
+from pendcore._cases.case import Case
+from pendcore._cases.whole_file import whole_file
+from pendcore._messages import progress as bars
+from pendcore._messages.progress import Progress
+from pendcore._messages.warning import warn
+from pendcore._run.solution import Solution
 from pendcore.derive import narration
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.report import conversion, motion, numbers, problem, steps
 from pendcore.derive.report.blanks import concealed
 from pendcore.derive.report.document import Block, Document, Heading, Paragraph, Reader, Space
 from pendcore.derive.report.figures import Figures
-from pendcore.messages import progress as bars
-from pendcore.messages.progress import Progress
-from pendcore.messages.warning import warn
 
 
 class Report(NamedTuple):

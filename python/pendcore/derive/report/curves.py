@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pendcore.api.solution import Solution
-from pendcore.figures.plot import plot
-from pendcore.messages.arguments import Floats
+from pendcore._figures.plot import plot
+from pendcore._messages.arguments import Floats
+from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pendcore._messages.arguments import Floats
 from pendcore.derive.report.labels import Label, place
-from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from math import degrees
 
 import numpy as np
 
-from pendcore.api.solution import Solution
+from pendcore._run.solution import Solution
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import curves, drawing

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pendcore.api.scene import Scene
+from pendcore._messages.arguments import Floats
+from pendcore._scene.scene import Scene
 from pendcore.derive.report import drawing
 from pendcore.derive.report.drawing import Sketch, direction, name
-from pendcore.messages.arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

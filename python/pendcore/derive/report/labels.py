@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.messages.arguments import Floats
+from pendcore._messages.arguments import Floats
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

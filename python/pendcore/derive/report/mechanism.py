@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.api.scene import Scene
+from pendcore._messages.arguments import Floats
+from pendcore._scene.effect_class import Effect
+from pendcore._scene.scene import Scene
 from pendcore.derive.report import drawing
 from pendcore.derive.report.drawing import Sketch, direction, name
-from pendcore.messages.arguments import Floats
-from pendcore.scene.effect_class import Effect
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,16 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from pendcore.api.solution import Case, Solution
+from pendcore._cases.case import Case
+from pendcore._run.accuracy import AccuracyError
+from pendcore._run.energy import LOSSES
+from pendcore._run.solution import Solution
+from pendcore._views.energy_drift import energy_drift
+from pendcore._views.trusted_digits import rounded, trusted_digits
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.report.document import Block, Heading, Paragraph, Table
 from pendcore.derive.report.figures import Figures
 from pendcore.derive.report.quantities import number, quantity
 from pendcore.derive.report.scales import Scales
-from pendcore.run.accuracy import AccuracyError
-from pendcore.run.energy import LOSSES
-from pendcore.views.energy_drift import energy_drift
-from pendcore.views.trusted_digits import rounded, trusted_digits
 
 POINTS = 1201
 """The number of times at which curves are drawn."""

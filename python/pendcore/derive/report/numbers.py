@@ -9,13 +9,13 @@ import numpy as np
 import sympy
 from sympy import Expr, Float
 
-from pendcore.api.solution import Case
+from pendcore._cases.case import Case
+from pendcore._messages.arguments import Floats
 from pendcore.derive import line_breaks
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.report.document import Block, Displayed, Heading, Paragraph, Table
 from pendcore.derive.report.quantities import number, quantity, unit
 from pendcore.derive.report.scales import ROUNDING, Scales
-from pendcore.messages.arguments import Floats
 
 
 def numbers_put_in(derivation: Algebra) -> Iterator[Block]:

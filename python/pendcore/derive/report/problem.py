@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pendcore.api.solution import Case
+from pendcore._cases.case import Case
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.laws.rod_drag import AT_REST
 from pendcore.derive.report.document import Block, Displayed, Heading, Paragraph, Table

@@ -1,0 +1,48 @@
+"""Events that cannot happen, because the energy does not suffice.
+
+A chain without effects keeps its energy E = T + V, and T is never negative. With link i at an angle
+q, V is least if every other link hangs::
+
+    V = -g sum_j w_j sin q_j,    w_j = m_j c_j + L_j (m_{j+1} + ... + m_n)
+    V_least = -|g| sum_{j != i} |w_j| - g w_i sin q
+
+For two equal uniform rods released at rest, and link 2 upright, this is the condition
+3 cos(theta_1) + cos(theta_2) > 2 of Heyl (2008), with angles from hanging.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore._ensemble.members import Members
+from pendcore._run.events import Event, LinkAngle
+
+MARGIN = 1e-9
+"""The share of the energies that must be missing: rounding makes nothing impossible."""
+
+
+def is_forbidden(members: Members, event: Event) -> npt.NDArray[np.bool_]:
+    """Return at which members the event is known not to happen, (...).
+
+    Nothing is known of scenes with effects or varied parameters, and of other events.
+    """
+    scene = members.scene
+    unknown = np.zeros(members.shape, dtype=bool)
+    if scene.effects or members.vary or not isinstance(event, LinkAngle):
+        return unknown
+    mass = np.array([link.mass for link in scene.links])
+    length = np.array([link.length for link in scene.links])
+    beyond = np.cumsum(mass[::-1])[::-1] - mass
+    weights = scene.gravity * (
+        mass * np.array([link.center for link in scene.links]) + length * beyond
+    )
+    i = event.link - 1
+    least = -np.abs(weights).sum() + abs(weights[i]) - weights[i] * np.sin(event.value)
+    n = len(scene.links)
+    q, qd = members.q0.reshape(-1, n), members.qd0.reshape(-1, n)
+    kinetic, potential = scene._compiled.energy(np.zeros(len(q)), q, qd)
+    missing = least - (kinetic + potential)
+    scale = np.abs(kinetic) + np.abs(potential) + np.abs(weights).sum()
+    found: npt.NDArray[np.bool_] = missing > MARGIN * scale
+    return found.reshape(members.shape)

@@ -1,0 +1,130 @@
+"""What tells the members of an ensemble apart: starts and parameters that broadcast."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore._messages.arguments import Floats, real_array
+from pendcore._scene.parameters import check_parameter_names
+from pendcore._scene.scene import Scene
+
+Index = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Members:
+    """The members of an ensemble; arrays that were broadcast take the memory of what was given.
+
+    Attributes
+    ----------
+    scene : Scene
+        What they have in common.
+    shape : tuple of int
+        The shape of the ensemble.
+    q0, qd0 : ndarray, (*shape, n)
+        rad, rad/s.
+    vary : dict
+        Parameter name to its values, ``(*shape)``.
+    """
+
+    scene: Scene
+    shape: Index
+    q0: Floats
+    qd0: Floats
+    vary: dict[str, Floats]
+
+    @property
+    def count(self) -> int:
+        """The number of members."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def values(self, index: Index) -> dict[str, float]:
+        """Return the parameters of a member that vary."""
+        return {name: float(values[index]) for name, values in self.vary.items()}
+
+    def scene_of(self, index: Index) -> Any:
+        """Return the scene of a member."""
+        return self.scene.with_parameters(self.values(index)) if self.vary else self.scene
+
+    def block(self, block: tuple[slice, ...]) -> Members:
+        """Return the members of a block, in memory of their own."""
+        return replace(
+            self,
+            shape=tuple(one.stop - one.start for one in block),
+            q0=self.q0[block].copy(),
+            qd0=self.qd0[block].copy(),
+            vary={name: values[block].copy() for name, values in self.vary.items()},
+        )
+
+    def selected(self, places: npt.NDArray[np.intp]) -> Members:
+        """Return the members at flat places, along one axis."""
+        shape = self.shape or (1,)  # an ensemble without axes has one member
+        where = np.unravel_index(places, shape)
+        n = self.q0.shape[-1:]
+        return replace(
+            self,
+            shape=places.shape,
+            q0=np.broadcast_to(self.q0, shape + n)[where],
+            qd0=np.broadcast_to(self.qd0, shape + n)[where],
+            vary={
+                name: np.broadcast_to(values, shape)[where] for name, values in self.vary.items()
+            },
+        )
+
+
+def members_of(
+    scene: Scene,
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike,
+    vary: Mapping[str, npt.ArrayLike] | None,
+) -> Members:
+    """Return the members that starts and parameters make together, by NumPy's broadcasting."""
+    n = len(scene.links)
+    angles, rates = _start("q0", q0, n, "rad"), _start("qd0", qd0, n, "rad/s")
+    given = _parameters(scene, vary)
+    leading = {"q0": angles.shape[:-1], "qd0": rates.shape[:-1]}
+    leading |= {f'vary["{name}"]': values.shape for name, values in given.items()}
+    try:
+        shape = np.broadcast_shapes(*leading.values())
+    except ValueError:
+        shapes = ", ".join(f"{name} {shape}" for name, shape in leading.items() if shape)
+        raise ValueError(
+            f"the members' axes do not broadcast: {shapes}; the last axis of q0 and qd0, which "
+            "runs over the links, is left out here"
+        ) from None
+    return Members(
+        scene,
+        shape,
+        np.broadcast_to(angles, (*shape, n)),
+        np.broadcast_to(rates, (*shape, n)),
+        {name: np.broadcast_to(values, shape) for name, values in given.items()},
+    )
+
+
+def _start(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
+    array = real_array(name, value, unit)
+    if array.ndim == 0:
+        return np.broadcast_to(array, (n,))
+    if array.shape[-1] != n:
+        raise ValueError(
+            f"{name}: shape {array.shape}: must be (..., {n}): the last axis runs over the links, "
+            f"the axes before it over the members ({unit})"
+        )
+    return array
+
+
+def _parameters(scene: Scene, vary: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats]:
+    if vary is None:
+        return {}
+    if not isinstance(vary, Mapping):
+        raise TypeError(
+            f"vary = {vary!r}: must be a dictionary of names and values, such as "
+            '{"link[1].mass": [0.9, 1.0, 1.1]}'
+        )
+    check_parameter_names(scene._compiled, vary)
+    return {name: real_array(f'vary["{name}"]', value, "") for name, value in vary.items()}

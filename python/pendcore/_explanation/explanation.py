@@ -1,0 +1,265 @@
+"""An explanation of a scene: what it holds, its text for people, and its JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from math import isfinite
+from textwrap import wrap
+from typing import Any, NamedTuple
+
+from pendcore._explanation.equilibria import Equilibrium, Mode
+from pendcore._explanation.not_modelled import Absence
+from pendcore._messages.html import beside, table
+from pendcore._scene.drives import changes_with_time
+from pendcore._scene.scene import Mobility, Scene
+
+STEPS_A_PERIOD = 500
+"""The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
+default tolerances of `simulate`, from a start at rest up to half a radian from an equilibrium."""
+_WIDTH = 80
+_NAME = 58
+
+
+class Cost(NamedTuple):
+    """What a part of a right-hand side takes.
+
+    Attributes
+    ----------
+    what : str
+        ``"links"`` (with gravity), an effect by its number and kind, or ``"all"``.
+    operations : int or None
+        Additions, multiplications, divisions and the like that an effect adds; None where they are
+        not counted, as in a function of the user's.
+    nanoseconds : float
+        Measured on the spot; for an effect, what it adds to the links alone.
+    """
+
+    what: str
+    operations: int | None
+    nanoseconds: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Explanation:
+    """What `Scene.explain` finds. It prints as a table.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene that is explained.
+    t : float
+        Time at which motors and pivot were looked at, s.
+    costs : tuple of Cost
+        The links, each effect, all.
+    mobility : Mobility
+        The textbook's count.
+    constraint_rank : int or None
+        Rank of the constraint Jacobian of the hinges and locks, on 3 coordinates a link; None
+        where the links are too many.
+    equilibria : tuple of Equilibrium
+        Hanging, upright and the start, where they are in balance, or what Newton's method finds
+        from there; each with its natural frequencies. Dry friction is left out.
+    stiffest_rate : float or None
+        The largest eigenvalue about any equilibrium, 1/s; None if there is no equilibrium.
+    fastest_drive : float
+        The largest angular frequency of a sinusoid, rad/s; 0 if there is no sinusoid.
+    first_step : float or None
+        The period of the faster of these two over `STEPS_A_PERIOD`, s: safe for a start at rest
+        near an equilibrium, at the default tolerances. None where no equilibrium is known.
+    not_simulated : tuple of Absence
+        What the program knows and the scene does not have, then what the program does not know.
+    lanes : tuple of str
+        The methods by which `ensemble` runs several members at once, a lane of the processor's
+        registers each; it runs others one by one.
+    remarks : tuple of str
+        What was left out here, and why.
+
+    Examples
+    --------
+    >>> told = pc.Scene.textbook().explain()
+    >>> [(found.name, found.stability) for found in told.equilibria]
+    [('hanging', 'stable'), ('upright', 'unstable')]
+    >>> f"{told.stiffest_rate:.2f} 1/s, {told.degrees_of_freedom} degrees of freedom"
+    '7.19 1/s, 2 degrees of freedom'
+    """
+
+    scene: Scene
+    t: float
+    costs: tuple[Cost, ...]
+    mobility: Mobility
+    constraint_rank: int | None
+    equilibria: tuple[Equilibrium, ...]
+    stiffest_rate: float | None
+    fastest_drive: float
+    first_step: float | None
+    not_simulated: tuple[Absence, ...]
+    lanes: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def degrees_of_freedom(self) -> int | None:
+        """Coordinates less constraints, ``3 n - rank``; None where the rank is None."""
+        rank = self.constraint_rank
+        return None if rank is None else 3 * len(self.scene.links) - rank
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the same as JSON can hold it; None where there is no number."""
+        told = {
+            "links": [asdict(link) for link in self.scene.links],
+            "gravity": self.scene.gravity,
+            "effects": [repr(effect) for effect in self.scene.effects],
+            "t": self.t,
+            "costs": [cost._asdict() for cost in self.costs],
+            "mobility": self.mobility._asdict(),
+            "constraint_rank": self.constraint_rank,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "equilibria": [
+                found._asdict() | {"modes": [mode._asdict() for mode in found.modes]}
+                for found in self.equilibria
+            ],
+            "stiffest_rate": self.stiffest_rate,
+            "fastest_drive": self.fastest_drive,
+            "first_step": self.first_step,
+            "not_simulated": [absence._asdict() for absence in self.not_simulated],
+            "lanes": self.lanes,
+            "remarks": self.remarks,
+        }
+        return _plain(told)  # type: ignore[no-any-return]
+
+    def _repr_html_(self) -> str:
+        costs = [
+            [one.what, "" if one.operations is None else str(one.operations),
+             f"{one.nanoseconds:.0f}"]
+            for one in self.costs
+        ]  # fmt: skip
+        found = [
+            [
+                one.name,
+                one.stability,
+                ", ".join(
+                    f"{x.angular_frequency:.4g}" for x in one.modes if x.angular_frequency > 0
+                ),
+            ]
+            for one in self.equilibria
+        ]
+        return beside(
+            table(costs, ("simulated", "operations", "ns")),
+            table(found, ("equilibrium", "", "frequencies (rad/s)")),
+            table([[one.sentence] for one in self.not_simulated], ("not simulated",)),
+        )
+
+    def __repr__(self) -> str:
+        return _text(self)
+
+
+def _text(told: Explanation) -> str:
+    """Return an explanation as a table."""
+    n, at = len(told.scene.links), f"t = {told.t:.6g} s"
+    head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, explained at {at}"
+    blocks = [
+        [head],
+        ["What is simulated, and what it costs in a right-hand side", *_costs(told)],
+        ["Freedom", *_freedom(told)],
+        ["Equilibria" + _frozen(told), *_equilibria(told)],
+        ["How fast", *_rates(told)],
+        ["What is not simulated", *_absences(told)],
+        ["Many at once", *_bullet(_of_lanes(told.lanes))],
+    ]
+    if told.remarks:
+        blocks.append(["Remarks", *(line for remark in told.remarks for line in _bullet(remark))])
+    return "\n\n".join("\n".join(block) for block in blocks)
+
+
+def _plain(value: Any) -> Any:
+    """JSON knows no tuples, and neither infinities nor NaN."""
+    if isinstance(value, dict):
+        return {key: _plain(x) for key, x in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(x) for x in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _costs(told: Explanation) -> Iterator[str]:
+    yield f"  {'':{_NAME}} operations       ns"
+    names = ["links, gravity", *map(repr, told.scene.effects), "all together"]
+    for name, cost in zip(names, told.costs, strict=True):
+        *more, last = wrap(name, _NAME, subsequent_indent="    ", max_lines=4, placeholder=" ...")
+        operations = "" if cost.operations is None else cost.operations
+        yield from (f"  {line}" for line in more)
+        yield f"  {last:{_NAME}} {operations:>10} {cost.nanoseconds:8.1f}"
+    yield "  (measured just now: a difference of a ns or two is noise)"
+
+
+def _freedom(told: Explanation) -> Iterator[str]:
+    n, c5, c4, freedom = told.mobility
+    yield f"  the textbook's count       M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
+    if told.constraint_rank is not None:
+        whole = 3 * len(told.scene.links)
+        found = f"{whole} - {told.constraint_rank} = {told.degrees_of_freedom}"
+        yield f"  the constraints' Jacobian  3 n - rank = {found}"
+
+
+def _frozen(told: Explanation) -> str:
+    """Where something changes with time, the heading says that here it does not."""
+    held = told.equilibria and changes_with_time(told.scene)
+    return f", with all drives held as they are at t = {told.t:.6g} s" if held else ""
+
+
+def _equilibria(told: Explanation) -> Iterator[str]:
+    for found in told.equilibria:
+        angles = ", ".join(f"{x:.6g}" for x in found.q[:4]) + ", ..." * (len(found.q) > 4)
+        yield f"  {found.name}, {found.stability}: q = ({angles}) rad"
+        shown = found.modes if len(found.modes) <= 8 else (*found.modes[:4], *found.modes[-4:])
+        for i, mode in enumerate(shown):
+            if i == 4 and len(found.modes) > 8:
+                yield f"    ... {len(found.modes) - 8} more"
+            yield f"    {_motion(mode)}"
+    if not told.equilibria:
+        yield "  none was found"
+
+
+def _motion(mode: Mode) -> str:
+    if mode.damping_ratio is not None:
+        ratio = 0.0 if abs(mode.damping_ratio) < 1e-9 else mode.damping_ratio
+        how = f"damping ratio {ratio:.3g}"
+        return f"{mode.angular_frequency:11.6g} rad/s = {mode.frequency:.6g} Hz, {how}"
+    word = "grows" if mode.rate > 0 else "decays" if mode.rate < 0 else "stays"
+    return f"{abs(mode.rate):11.6g} 1/s, {word} without oscillating"
+
+
+def _rates(told: Explanation) -> Iterator[str]:
+    if told.stiffest_rate is not None:
+        yield f"  stiffest rate   {told.stiffest_rate:.6g} 1/s, about the equilibria"
+    if told.fastest_drive:
+        yield f"  fastest drive   {told.fastest_drive:.6g} rad/s"
+    if told.first_step is None:
+        yield "  first step      nothing is known here to choose it by"
+    else:
+        share = f"1/{STEPS_A_PERIOD} of the fastest period"
+        yield f"  first step      {told.first_step:.3g} s, {share}: safe for a start at"
+        yield "                  rest near an equilibrium, at the default tolerances"
+
+
+def _absences(told: Explanation) -> Iterator[str]:
+    for absence in told.not_simulated:
+        name = absence.kind.replace("_", " ") if absence.available else "(no effect yet)"
+        first, *more = wrap(absence.sentence, _WIDTH - 22)
+        yield f"  {name:18}  {first}"
+        yield from (f"{'':22}{line}" for line in more)
+
+
+def _of_lanes(methods: tuple[str, ...]) -> str:
+    if not methods:
+        return "an ensemble runs its members one by one in each thread"
+    *others, last = methods
+    names = f"{', '.join(others)} or {last}" if others else last
+    return (
+        f"an ensemble runs several members at once, a lane each, by {names}; it runs them one by "
+        "one with events that are functions of your own, for the largest exponent, and for the "
+        "energy drift if effects do work or lose energy"
+    )
+
+
+def _bullet(remark: str) -> list[str]:
+    return wrap(remark, _WIDTH, initial_indent="  ", subsequent_indent="  ")

@@ -1,0 +1,181 @@
+"""How much longer a run stays valid with one more digit, and what that digit costs.
+
+In a chaotic motion an error e grows like e exp(lambda t). So a run that is right to one more digit
+is right for ln(10)/lambda seconds longer, whatever the method. The method decides what it costs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from math import inf, nan
+from time import monotonic, perf_counter
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore._accuracy.estimate import error_estimate
+from pendcore._horizon.horizon_work import HorizonPoint, HorizonWork
+from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
+from pendcore._messages.arguments import numbers, positive, time_limit_of, time_span
+from pendcore._messages.progress import Progress, callback, close
+from pendcore._run.call import Choice, Start, atol_beside, forget_inner_runs, run, supports
+from pendcore._run.error_estimate import ErrorEstimate
+from pendcore._run.methods import has_error_estimate, known_methods, methods_named
+from pendcore._scene.scene import Scene, require_scene
+
+METHODS = ("dopri5", "dop853", "taylor")
+"""The methods that are tried by default, where they support the scene."""
+RTOLS = tuple(10.0**-k for k in range(3, 15))
+TIGHT = 1e-14
+"""The rtol of the exponent's run, which must be right for as long as any of the runs."""
+REPEATS = 5
+"""The number of timed runs at each point; the quickest counts."""
+
+
+def horizon_work(
+    scene: Scene,
+    t_span: Iterable[float],
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike = 0.0,
+    *,
+    limit: float = 0.1,
+    methods: str | Iterable[str] | None = None,
+    rtols: npt.ArrayLike = RTOLS,
+    time_limit: float = 60.0,
+    progress: Progress = None,
+) -> HorizonWork:
+    """Measure how long runs of a scene are to be trusted, and what that costs.
+
+    Parameters
+    ----------
+    scene, t_span, q0, qd0
+        As in `simulate`. Take a span that is longer than any run stays right: up to thirty
+        Lyapunov times.
+    limit : float
+        rad; a run counts as valid until the error of an angle passes it.
+    methods : str or iterable of str, optional
+        Methods that choose their steps, but not ``"auto"``, which is a rule. Default: dopri5,
+        dop853 and taylor, where they support the scene.
+    rtols : array_like, (k,)
+        Tolerances, > 0 and < 1, each with an ``atol`` of a thousandth.
+    time_limit : float
+        s of the clock, after which no further point is begun.
+    progress
+        As in `simulate`.
+
+    Returns
+    -------
+    HorizonWork
+        With ``.points``, ``.exponent``, ``.seconds_a_digit`` and ``.plot()``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument is not what is asked for.
+    KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+        With what was found so far as the attribute ``work``.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=[1e-3, 1e-9])
+    >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
+    ['1e-03: 8 s', '1e-09: 18 s']
+    """
+    require_scene(scene)
+    start = Start(scene, q0, qd0, *time_span(t_span))
+    _check_start(start, "dopri5")
+    limit = positive("limit", limit, "rad")
+    names = _methods(methods, start)
+    tolerances = numbers("rtols", rtols, "")
+    if not tolerances or not all(0 < rtol < 1 for rtol in tolerances):
+        raise ValueError(f"rtols = {rtols!r}: must hold a tolerance, and each be > 0 and < 1")
+    choices = [Choice(method, r, atol_beside(r)) for method in names for r in tolerances]
+    until = monotonic() + time_limit_of(time_limit)
+    report = callback(progress, "measuring")
+    found: list[tuple[ErrorEstimate, HorizonPoint]] = []
+    try:
+        for done, choice in enumerate(choices):
+            if monotonic() > until:
+                break
+            if report is not None:
+                report(done / len(choices))
+            found.append(_point(start, choice, limit))
+        work = _work(start, limit, choices, found)
+        try:
+            return replace(work, growth=_growth(start, work))
+        except ValueError as refusal:  # dry friction and stops have no exponents
+            return replace(work, refusal=str(refusal))
+    except BaseException as stopped:
+        forget_inner_runs(stopped)
+        stopped.work = _work(start, limit, choices, found)  # type: ignore[attr-defined]
+        raise
+    finally:
+        close(report)
+
+
+def _check_start(start: Start, method: str) -> None:
+    """Run for no time at all, which raises what is wrong with the start or the method."""
+    run(start._replace(t_end=start.t_start), Choice(method, 1e-6, 1e-9), store="end")
+
+
+def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
+    """Return the names of the methods to try, without aliases and each once."""
+    if given is None:
+        return [method for method in METHODS if supports(method, start)]
+    names = methods_named(given)
+    for method in names:
+        if not has_error_estimate(method):
+            known = [name for name in known_methods() if has_error_estimate(name)]
+            raise ValueError(
+                f"methods: {method!r} takes fixed steps and has no tolerance to vary: must be of "
+                f"{', '.join(known)}; pendcore.accuracy_cost measures it too"
+            )
+        _check_start(start, method)
+    return names
+
+
+def _point(start: Start, choice: Choice, limit: float) -> tuple[ErrorEstimate, HorizonPoint]:
+    error = error_estimate(run(start, choice), progress=False)
+    valid = error.valid_until(limit)
+    so_far = start._replace(t_end=valid)
+    seconds, nfev = inf, 0
+    for _ in range(REPEATS):
+        began = perf_counter()
+        made = run(so_far, choice, store="end")
+        seconds = min(seconds, perf_counter() - began)
+        nfev = made.stats.nfev
+    rtol, horizon = float(np.min(choice.rtol)), abs(valid - start.t_start)
+    return error, HorizonPoint(choice.method, rtol, horizon, seconds, nfev, nan)
+
+
+def _work(
+    start: Start,
+    limit: float,
+    choices: list[Choice],
+    found: list[tuple[ErrorEstimate, HorizonPoint]],
+) -> HorizonWork:
+    """Return the result without its exponent, which is computed from it."""
+    early = min((point.valid for _, point in found), default=0.0)
+    points = [
+        point._replace(early=float(error.angle[np.abs(error.t - start.t_start) <= early].max()))
+        for error, point in found
+    ]
+    untried = tuple((one.method, float(np.min(one.rtol))) for one in choices[len(found) :])
+    return HorizonWork(
+        limit=limit, t_span=(start.t_start, start.t_end), points=tuple(points), early=early,
+        growth=None, untried=untried,
+    )  # fmt: skip
+
+
+def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
+    """Return how fast neighbours part between the shortest and the longest of the horizons."""
+    longest = max((point.valid for point in work.points), default=0.0)
+    if not longest > work.early:
+        return None
+    end = start.t_start + np.copysign(longest, start.t_end - start.t_start)
+    return lyapunov(
+        start.scene, (start.t_start, end), start.q0, start.qd0, count=1, transient=work.early,
+        rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
+    )  # fmt: skip

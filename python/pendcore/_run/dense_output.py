@@ -1,0 +1,94 @@
+"""The dense output of a run that kept none: the run is simulated anew, bit for bit as it was."""
+
+from __future__ import annotations
+
+from pendcore import _core
+from pendcore._messages.arguments import Floats
+from pendcore._messages.progress import callback
+from pendcore._run.call import completed, forget_inner_runs, resumed, silent
+from pendcore._run.solution import Solution
+
+MOST_BYTES = 2**31
+"""The largest dense output that is made for a run that was asked to keep less."""
+_START = ("q0", "qd0", "t_start", "t_end")
+
+
+def with_dense_output(solution: Solution) -> Solution:
+    """Return a run that has a state at any time, and the times that the given one kept.
+
+    Raises
+    ------
+    ValueError
+        In the words of ``sol(t)``, if the run cannot be had again: a function of the user's gives
+        other values now, another version wrote the file, or the dense output would be too large.
+    """
+    if solution.store == "dense":
+        return solution
+    size = _bytes_of(solution)
+    if size > MOST_BYTES:
+        raise _refusal(solution, f"it would take {size / 2**30:.3g} GiB to do so for the drawing")
+    try:
+        again = _simulated_anew(solution)
+    except BaseException as stop:
+        forget_inner_runs(stop)
+        raise
+    if not _is_the_same(again, solution):
+        raise _refusal(
+            solution,
+            "simulated anew for the drawing it takes another course: a function of its own depends "
+            "on more than its arguments, or another version of pendcore made it",
+        )
+    return again
+
+
+def _bytes_of(solution: Solution) -> int:
+    """Return the size of the dense output that a run would have had."""
+    dimension = 2 * len(solution.scene.links) + len(solution.run.ledger)
+    return 8 * solution.stats.accepted * (solution.run.dense_degree + 1) * dimension
+
+
+def _simulated_anew(solution: Solution) -> Solution:
+    """Return the run as far as it came, whatever ended it."""
+    asked = solution.run.arguments
+    if solution.run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
+        asked |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
+    q0, qd0, t_start, t_end = (asked.pop(name) for name in _START)
+    whole = _attempts(solution)
+    # A run that came to its end goes beyond its last attempt where everything rests. A run that
+    # was broken off had begun another attempt, which is not repeated.
+    most = whole + 1 if solution.success else max(whole, 1)
+    options = asked | {"store": "dense", "max_steps": most, "time_limit": None}
+    scene, report = solution.scene, callback(None)
+    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, silent)
+    again = completed(Solution(scene, run, solution.name), report)
+    # A run that was resumed has passed events that end a run.
+    while again.status == "event" and again.run.t_reached != solution.run.t_reached:
+        most = max(whole + solution.success - _attempts(again), 1)
+        again = resumed(again, t_end, max_steps=most, progress=None)
+    return again
+
+
+def _attempts(solution: Solution) -> int:
+    return solution.stats.accepted + solution.stats.rejected
+
+
+def _is_the_same(again: Solution, solution: Solution) -> bool:
+    """Whether every bit that a run kept is there again."""
+    one, other = again.run, solution.run
+    same = one.t_reached == other.t_reached and _bits(one.y_reached) == _bits(other.y_reached)
+    if solution.store == "end" or not len(other.t):
+        return same
+    return same and _bits(one.t) == _bits(other.t) and _bits(one.states) == _bits(other.states)
+
+
+def _bits(numbers: Floats) -> bytes:
+    return numbers.tobytes()
+
+
+def _refusal(solution: Solution, reason: str) -> ValueError:
+    """Return what the core says where it is asked for dense output, with a reason."""
+    try:
+        solution.run.evaluate(solution.run.t[:0])
+    except ValueError as refused:
+        return ValueError(f"{refused}; {reason}")
+    raise AssertionError("a run without dense output evaluates")

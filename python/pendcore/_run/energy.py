@@ -1,0 +1,156 @@
+"""Energies over time, and where the energy went: work and loss of every effect."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pendcore import _core
+from pendcore._messages.arguments import Floats
+from pendcore._scene.scene import Scene
+
+LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss)
+"""The entries that count what is lost; the others count work done on the chain."""
+
+
+class Ledger(Mapping[str, Floats]):
+    """Work and loss since the start, J, an entry for each kind that the scene has.
+
+    ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
+    ``user`` are work done on the chain. ``residual`` is the remainder of the balance, which is the
+    error of the run::
+
+        [T + V](t) - [T + V](0) = motor + drive + wind + user
+                                  - viscous - dry - drag - impact + residual
+
+    An entry is an attribute, ``ledger.viscous``, and an item, ``ledger["viscous"]``, (n_t,).
+    Entries for which the scene has no effect are missing.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
+    >>> sol = pc.simulate(scene, (0, 5), 0.5, ledger=True)
+    >>> ledger = sol.energy().ledger
+    >>> [*ledger], f"{ledger.viscous[-1]:.3f} J"
+    (['viscous', 'residual'], '1.705 J')
+    >>> bool(abs(ledger.residual).max() < 1e-6)
+    True
+    """
+
+    __slots__ = ("_entries",)
+    _entries: dict[str, Floats]
+
+    def __init__(self, entries: Mapping[str, Floats], gain: Floats) -> None:
+        """Take the entries, and how much energy the chain has gained since the start, J."""
+        booked = sum(
+            (-x if name in LOSSES else x for name, x in entries.items()), np.zeros(len(gain))
+        )
+        residual = gain - booked
+        residual.flags.writeable = False
+        object.__setattr__(self, "_entries", {**entries, "residual": residual})
+
+    def __getitem__(self, name: str) -> Floats:
+        try:
+            return self._entries[name]
+        except KeyError:
+            raise KeyError(self._has_no(name)) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __getattr__(self, name: str) -> Floats:
+        try:
+            return self._entries[name]
+        except KeyError:
+            raise AttributeError(self._has_no(name)) from None
+
+    def _has_no(self, name: str) -> str:
+        return f"the ledger has no entry {name!r}: it has {', '.join(self._entries)}"
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{name}: a ledger cannot be changed")
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._entries]
+
+    __eq__ = object.__eq__  # Mapping.__eq__ would compare arrays
+    __hash__ = object.__hash__
+
+    def __reduce__(self) -> tuple[object, tuple[dict[str, Floats]]]:
+        return _again, (self._entries,)
+
+    def __repr__(self) -> str:
+        if not len(self.residual):
+            return f"<Ledger: {', '.join(self)} at no times>"
+        ends = ", ".join(f"{name} {entry[-1]:.6g}" for name, entry in self.items())
+        return f"<Ledger, J, at the last of {len(self.residual)} times: {ends}>"
+
+
+def _again(entries: dict[str, Floats]) -> Ledger:
+    ledger = object.__new__(Ledger)
+    object.__setattr__(ledger, "_entries", entries)
+    return ledger
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Energy:
+    """Energies of states; the potential energy is zero at the height of the origin.
+
+    Attributes
+    ----------
+    kinetic, potential, total : ndarray, (n_t,)
+        J; for the members of an ensemble (...). Springs are part of the potential energy, rotors
+        and payload of the kinetic one.
+    ledger : Ledger or None
+        Work and loss of every effect, if the run kept them: ``simulate(..., ledger=True)``.
+
+    Examples
+    --------
+    >>> energy = pc.Case.textbook().simulate().energy()
+    >>> f"T = {energy.kinetic[0]:.3f} J, V = {energy.potential[0]:.3f} J"
+    'T = 0.000 J, V = -14.648 J'
+    >>> bool(np.ptp(energy.total) < 1e-6)  # nothing takes energy out of this scene
+    True
+    """
+
+    kinetic: Floats
+    potential: Floats
+    total: Floats
+    ledger: Ledger | None = None
+
+    def __repr__(self) -> str:
+        numbers = self.total[~np.isnan(self.total)]
+        span = ""
+        if numbers.size:
+            span = f"; the total is {numbers.min():.6g} to {numbers.max():.6g} J"
+        return f"<Energy: kinetic, potential, total, each {self.total.shape}{span}>"
+
+
+def energy_over(
+    scene: Scene,
+    asked: Mapping[str, Any],
+    t: Floats,
+    states: Floats,
+    entries: Mapping[str, Floats],
+) -> Energy:
+    """Return the energies of states (n_t, 2n) of a run, and its ledger where it has entries.
+
+    ``asked`` are the arguments of the run, ``entries`` those of its ledger at these times, J.
+    """
+    n = len(scene.links)
+    kinetic, potential = scene._compiled.energy(t, states[:, :n], states[:, n:])
+    with np.errstate(all="ignore"):  # a blow-up's energies may be infinite
+        total = kinetic + potential
+    if not asked["ledger"]:
+        return Energy(kinetic, potential, total)
+    start = scene._compiled.energy(
+        np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
+    )
+    with np.errstate(all="ignore"):
+        return Energy(kinetic, potential, total, Ledger(entries, total - sum(start)))

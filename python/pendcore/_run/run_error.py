@@ -1,0 +1,84 @@
+"""What follows a run that was not finished, or not verified: a warning, an exception, nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pendcore._messages.warning import PendcoreWarning, warn
+from pendcore._run.solution import Solution
+
+CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
+"""The statuses after which `Solution.resume` gets further, even in a loaded run without its
+functions."""
+
+
+REMEDY = 'on_failure="raise" raises an error, on_failure="ignore" says nothing'
+
+
+class RunError(RuntimeError):
+    """A run was not finished, or not verified in time, and ``on_failure="raise"`` asked for it.
+
+    Attributes
+    ----------
+    solution : Solution
+        The run as far as it came; its ``status`` and ``message`` tell why it ended.
+
+    Examples
+    --------
+    >>> try:
+    ...     pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, max_steps=10, on_failure="raise")
+    ... except pc.RunError as ended:
+    ...     print(ended.solution.status, len(ended.solution.t))
+    max_steps 11
+    """
+
+    def __init__(self, message: str, solution: Any) -> None:
+        super().__init__(message)
+        self.solution = solution
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (str(self), self.solution)
+
+
+def require_on_failure(on_failure: object) -> None:
+    """Raise ValueError for a wrong ``on_failure``, before a run that may take an hour."""
+    if not (isinstance(on_failure, str) and on_failure in ("warn", "raise", "ignore")):
+        raise ValueError(f'on_failure = {on_failure!r}: must be "warn", "raise" or "ignore"')
+
+
+def checked(solution: Solution, on_failure: str) -> Solution:
+    """Return a solution; one that is not finished and verified as ``on_failure`` says."""
+    if on_failure == "ignore" or (solution.success and not why_unverified(solution)):
+        return solution
+    if on_failure == "raise":
+        raise RunError(_complaint(solution), solution)
+    try:
+        warn(f"{_complaint(solution)}; {REMEDY}")
+    except PendcoreWarning as error:  # where warnings are errors the run is not lost either
+        error.solution = solution  # type: ignore[attr-defined]
+        raise
+    return solution
+
+
+def why_unverified(solution: Solution) -> str:
+    """Say why a finished run for an error was not verified; empty if it was, or is no such run."""
+    accuracy = solution.accuracy
+    if accuracy is None or accuracy.outcome != "ended early":
+        return ""
+    return f"the run is finished, but not verified: {accuracy.verified_by}"
+
+
+def _complaint(solution: Solution) -> str:
+    """Say why a run ended and what continues it; some messages say the latter themselves."""
+    if solution.success:
+        return why_unverified(solution)
+    t_end, message = solution.run.arguments["t_end"], solution.message
+    complaint = (
+        f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
+        f"{message.removeprefix(f'{solution.status}: ')}"
+    )
+    if solution.accuracy is not None:
+        return f"{complaint}; its error: {solution.accuracy.text()}"
+    if solution.status in CAN_GO_ON and "resume" not in message:
+        complaint += f"; solution.resume({t_end!r}) continues it"
+    return complaint

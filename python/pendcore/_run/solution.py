@@ -1,0 +1,800 @@
+"""What one run found: times, angles, rates, what follows from them, and what can be made of it.
+
+n is the number of links, n_t the number of kept times. Angles are absolute, from +x towards +y, and
+y points **down**. Nothing is computed before it is asked for: methods import what they call.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore._messages.arguments import Floats, finite_array, text, whole_number
+from pendcore._messages.progress import Progress
+from pendcore._run.accuracy import Accuracy
+from pendcore._run.energy import Energy, energy_over
+from pendcore._run.error_estimate import ErrorEstimate
+from pendcore._run.events import Event, event_of
+from pendcore._run.found_events import FoundEvents, found_events
+from pendcore._run.keywords import OnFailure
+from pendcore._run.largest_reactions import LargestReaction, largest_reactions
+from pendcore._run.options import RUN_DEFAULTS
+from pendcore._run.statistics import Statistics
+from pendcore._scene.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.artist import Artist
+
+    from pendcore._accuracy.defect import Defect
+    from pendcore._cases.case import Case
+    from pendcore._figures.plot import What
+    from pendcore._horizon.lyapunov import LyapunovExponents
+    from pendcore.page.notebook import NotebookPage
+
+
+class Solution:
+    """The result of `simulate`.
+
+    Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
+
+    Attributes
+    ----------
+    scene : Scene
+        What moved.
+    name : str
+        A name for people: that of the case, if there was one. It may be set.
+    accuracy : Accuracy or None
+        What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
+        and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
+        A run that was resumed, or run again from its `case`, has none.
+
+    Examples
+    --------
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), [np.pi / 4, np.pi / 3])
+    >>> sol.status, sol.q.shape == (len(sol.t), 2)
+    ('finished', True)
+    >>> f"q_2 = {sol(2.5)[1]:.6f} rad at 2.5 s"
+    'q_2 = 0.704933 rad at 2.5 s'
+    """
+
+    __slots__ = ("_events", "_name", "accuracy", "known_error", "run", "scene")
+
+    def __init__(
+        self,
+        scene: Scene,
+        run: _core.Run,
+        name: str = "",
+        accuracy: Accuracy | None = None,
+        error: ErrorEstimate | None = None,
+    ) -> None:
+        self.scene, self.run, self.name = scene, run, name
+        self.accuracy, self.known_error = accuracy, error
+        self._events: list[FoundEvents] | None = None
+
+    @property
+    def name(self) -> str:
+        """A name for people; it may be set to any text that a file can hold."""
+        return self._name
+
+    @name.setter
+    def name(self, name: str) -> None:
+        self._name = name if name == "" else text("name", name)  # 3 % of a run of one step
+
+    @property
+    def t(self) -> Floats:
+        """Times of the accepted steps, or ``t_eval``, s, (n_t,)."""
+        return self.run.t
+
+    @property
+    def q(self) -> Floats:
+        """Absolute angles, rad, (n_t, n)."""
+        return self.run.states[:, : len(self.scene.links)]
+
+    @property
+    def qd(self) -> Floats:
+        """Angular rates, rad/s, (n_t, n)."""
+        return self.run.states[:, len(self.scene.links) :]
+
+    @property
+    def y(self) -> Floats:
+        """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
+        return self.run.states.T
+
+    @property
+    def t_reached(self) -> float:
+        """The time to which the run came, s: its end, or where it broke off.
+
+        With ``t_eval`` it may lie beyond all of ``t``.
+        """
+        return self.run.t_reached
+
+    @property
+    def y_reached(self) -> Floats:
+        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s).
+
+        Examples
+        --------
+        >>> how = {"t_eval": [9.0], "max_steps": 5, "on_failure": "ignore"}
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 9), q0=0.5, **how)
+        >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
+        (0, '0.5 s', (4,))
+        """
+        return self.run.y_reached
+
+    def __call__(self, t: npt.ArrayLike) -> Floats:
+        """State at any time within the run, from the method's own interpolant.
+
+        Parameters
+        ----------
+        t : float or array_like, (k,)
+            s.
+
+        Returns
+        -------
+        ndarray, (2n,) or (2n, k)
+            q_1..q_n (rad), then qd_1..qd_n (rad/s).
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the run, or the run did not store its interpolants.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol(2.5).round(4)  # q_1, q_2 (rad), qd_1, qd_2 (rad/s)
+        array([ 0.9337,  0.7049, -0.0193,  1.4848])
+        >>> sol([0.0, 2.5, 5.0]).shape
+        (4, 3)
+        """
+        times = finite_array("t", t, "s")
+        if times.ndim > 1:
+            raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
+        states = self.run.evaluate(times.reshape(-1)).T
+        return states[:, 0] if times.ndim == 0 else states
+
+    @property
+    def status(self) -> str:
+        """How the run ended, in a word: ``"finished"``, ``"max_steps"``, ``"non_finite"``, ..."""
+        return self.run.status
+
+    @property
+    def message(self) -> str:
+        """How the run ended, in a sentence, with advice where there is some."""
+        return self.run.message
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end, or an event ended it as asked."""
+        return self.run.success
+
+    @property
+    def method(self) -> str:
+        """Name of the method."""
+        return self.run.method
+
+    @property
+    def store(self) -> str:
+        """What was kept: ``"dense"``, ``"steps"``, ``"times"`` or ``"end"``."""
+        return self.run.store
+
+    @property
+    def stats(self) -> Statistics:
+        """What the run took: right-hand sides, steps, and what limited them."""
+        return Statistics(**self.run.statistics)
+
+    @property
+    def events(self) -> list[FoundEvents]:
+        """What was found of each event asked for: a list for each, with arrays ``t, q, qd, y``.
+
+        The states come from the method's interpolant at the exact place in the step;
+        ``sol(event.t)`` differs by the rounding of t. See `pendcore.events.FoundEvents`.
+        """
+        if self._events is None:
+            self._events = found_events(
+                len(self.events_asked_for()), len(self.scene.links), self.run.found
+            )
+        return self._events
+
+    def events_asked_for(self) -> list[Event]:
+        """Return the events that the run looked for.
+
+        Times and states of what was found are in ``events``.
+
+        Examples
+        --------
+        >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 1), 0.5, events=[bottom])
+        >>> sol.events_asked_for() == [bottom]
+        True
+        """
+        return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
+
+    def relative_angles(self) -> Floats:
+        """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> np.degrees(sol.relative_angles()[0]).round(6)
+        array([45., 15.])
+        """
+        return np.diff(self.q, prepend=0.0)
+
+    def accelerations(self) -> Floats:
+        """Angular accelerations, rad/s^2, (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.accelerations()[0].round(3)  # at the start
+        array([10.811, -8.309])
+        """
+        return self.scene.accelerations(self.t, self.q, self.qd)
+
+    def positions(self) -> Floats:
+        """Pivot, joints and tip, m, (n_t, n+1, 2): x right, y down; a driven pivot moves.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.positions()[0].round(3)  # pivot, joint 2, tip
+        array([[0.   , 0.   ],
+               [0.707, 0.707],
+               [1.207, 1.573]])
+        """
+        return self.scene._compiled.positions(self.t, self.q)
+
+    def mass_centers(self) -> Floats:
+        """Mass centres of the links, a payload excluded, m, (n_t, n, 2): x right, y down.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.mass_centers()[0].round(3)
+        array([[0.354, 0.354],
+               [0.957, 1.14 ]])
+        """
+        return self.scene._compiled.mass_centers(self.t, self.q)
+
+    def reactions(self) -> Floats:
+        """Force on each link at the joint where it begins, N, (n_t, n, 2): x right, y down.
+
+        The textbook's F_01 (the ground's on link 1), F_12 (link 1's on link 2), and so on.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.reactions()[0].round(3)  # F_01 and F_12 at the start
+        array([[ -7.869, -10.224],
+               [ -4.047,  -4.24 ]])
+        """
+        return self.scene._compiled.reactions(self.t, self.q, self.qd)
+
+    def energy(self) -> Energy:
+        """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept.
+
+        Examples
+        --------
+        >>> energy = pc.Case.textbook().simulate().energy()
+        >>> f"{energy.total[0]:.4f} J at first, {energy.total[-1]:.4f} J at last"
+        '-14.6484 J at first, -14.6484 J at last'
+        """
+        run = self.run
+        return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
+
+    def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
+        """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
+
+        A run that stored its interpolants gives the largest force on the whole curve, also between
+        steps and on both sides of every jump; other runs give the largest at the kept times. The
+        impulse of an impact is not a force. See `pendcore.LargestReaction`; ``progress`` is as in
+        `simulate`.
+
+        Examples
+        --------
+        >>> first, second = pc.Case.textbook().simulate().largest_reactions()
+        >>> f"{first.force:.2f} N at joint {first.joint}, t = {first.t:.3f} s"
+        '31.93 N at joint 1, t = 0.644 s'
+        """
+        return largest_reactions(self.scene, self.run, progress)
+
+    def defect(self, *, progress: Progress = None) -> Defect:
+        """Return the spurious torques, N m: what motors would have to add to make the curve exact.
+
+        See `pendcore.Defect`; `docs/background/defect.md` says how to read them. ``progress`` is as
+        in `simulate`. Raises a ValueError if the run did not store its interpolants
+        (``store="dense"``).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> found = sol.defect()
+        >>> f"{found.largest:.0e} N m at joint {found.joint}"
+        '3e-06 N m at joint 1'
+        """
+        from pendcore._accuracy.defect import defect
+
+        return defect(self.scene, self.run, progress)
+
+    def estimate_error(
+        self, *, time_limit: float | None = None, progress: Progress = None
+    ) -> ErrorEstimate:
+        """Estimate the error over time from independent second runs, made when first asked for.
+
+        The second runs use another method, at a hundredth of this run's tolerances or less, with
+        constants and start moved by some last bits. If the run switched to ``"radau5"``, second
+        runs use ``"radau5"`` too. They end where they have nothing in common with this run any
+        more. A run that kept an ``error`` has the estimate that verified it.
+
+        Parameters
+        ----------
+        time_limit : float, optional
+            s of wall-clock time, > 0, after which the estimate ends where it is.
+        progress : as in `simulate`
+
+        Returns
+        -------
+        ErrorEstimate
+            ``.t`` (n_t,), s, ``.angle``, rad, ``.position``, a share of the total length.
+
+        Raises
+        ------
+        KeyboardInterrupt, or any exception of ``progress`` or of an effect's function
+            The attribute ``estimate`` is what was found so far, ``solution`` is this run.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> error = sol.estimate_error()
+        >>> f"{error.angle.max():.0e} rad, {error.position.max():.0e} of the total length"
+        '5e-09 rad, 2e-09 of the total length'
+        """
+        from pendcore._accuracy.estimate import error_of
+
+        return error_of(self, time_limit=time_limit, progress=progress)
+
+    def valid_until(
+        self, limit: float = 0.1, *, of: str = "angle", time_limit: float | None = None
+    ) -> float:
+        """Return how far to trust the run: the time at which its error passes a limit, s.
+
+        The answer errs on the safe side; it is the end of the run if the error stays within the
+        limit. See `ErrorEstimate.valid_until`.
+
+        Parameters
+        ----------
+        limit : float
+            rad; with ``of="position"`` a share of the total length.
+        of : {"angle", "position"}
+            What is limited: the angles of the links, or the positions of joints and tip.
+        time_limit : float, optional
+            As in `estimate_error`; the answer is then how far the run is known to hold by then.
+
+        Examples
+        --------
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 40), 0.0)  # chaotic
+        >>> f"{sol.valid_until():.0f} s, {sol.valid_until(1e-6, of='position'):.0f} s"
+        '18 s, 7 s'
+        """
+        return self.estimate_error(time_limit=time_limit).valid_until(limit, of=of)
+
+    def lyapunov(
+        self,
+        *,
+        count: int | None = None,
+        transient: float = 0.0,
+        t_eval: npt.ArrayLike | None = None,
+        progress: Progress = None,
+    ) -> LyapunovExponents:
+        """Compute the Lyapunov exponents of this very run, 1/s; see `pendcore.lyapunov`.
+
+        Examples
+        --------
+        >>> found = pc.Case.textbook().simulate().lyapunov()
+        >>> found.exponents.round(2)  # 1/s
+        array([ 0.42,  0.04, -0.06, -0.44])
+        """
+        from pendcore._horizon.lyapunov import lyapunov_of
+
+        return lyapunov_of(self, count, transient, t_eval, progress)
+
+    def resume(
+        self,
+        t_end: float,
+        t_eval: npt.ArrayLike | None = None,
+        *,
+        max_steps: int = RUN_DEFAULTS["max_steps"],
+        time_limit: float | None = None,
+        on_failure: OnFailure = "warn",
+        progress: Progress = None,
+    ) -> Solution:
+        """Continue to a later end, bitwise as if the run had never stopped.
+
+        Parameters
+        ----------
+        t_end : float
+            s; not before the end of this run, in its direction.
+        t_eval : array_like, (k,), optional
+            More times to keep, s: at or beyond the end of this run, and beyond its own ``t_eval``.
+            Only a run that had a ``t_eval`` takes it.
+        max_steps, time_limit, on_failure, progress
+            As in `simulate`, for the continuation. It begins before the first attempt that the
+            earlier ``t_end`` cut short, because all later steps depend on that cut. Attempts that
+            are repeated to the same ``t_end`` do not count, so a ``max_steps`` of 1 makes progress,
+            too.
+
+        Returns
+        -------
+        Solution
+            The whole run, from its first start. This solution does not change.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is out of its range or of the wrong type; the message names it.
+
+        Examples
+        --------
+        >>> case = pc.Case.textbook()
+        >>> longer = case.simulate().resume(10.0)
+        >>> whole = pc.simulate(case.scene, (0, 10), case.q0, method="ode45")
+        >>> np.array_equal(longer.y, whole.y)  # every bit
+        True
+        """
+        from pendcore._run.call import resumed
+        from pendcore._run.run_error import checked, require_on_failure
+
+        require_on_failure(on_failure)
+        longer = resumed(
+            self, t_end, t_eval, max_steps=max_steps, time_limit=time_limit, progress=progress
+        )
+        return checked(longer, on_failure)
+
+    def case(self) -> Case:
+        """Return the case of this run, ready to be run again or written as TOML.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> again = sol.case().simulate()
+        >>> np.array_equal(again.y, sol.y)
+        True
+        """
+        from pendcore._cases.case import Case
+
+        return Case.of_solution(self)
+
+    def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
+        """Write everything to a file of NumPy's npz format; see `pendcore.load`.
+
+        The file is complete or absent. ``progress`` is as in `simulate`.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.save("run.npz")
+        >>> np.array_equal(pc.load("run.npz").y, sol.y)
+        True
+        """
+        from pendcore._cases.archive import save
+
+        save(self, path, progress=progress)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``.
+
+        Times are in s, angles in rad, rates in rad/s.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> table = sol.to_pandas()
+        >>> table.iloc[-1].round(4).to_dict()
+        {'q_1': 1.0831, 'q_2': 0.5385, 'qd_1': 1.0004, 'qd_2': 0.3936}
+        >>> table.attrs["units"]["qd_2"]
+        'rad/s'
+        """
+        from pendcore._views.export import to_pandas
+
+        return to_pandas(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``.
+
+        Times are in s, angles in rad, rates in rad/s; each is (n_t, n).
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> data = sol.to_xarray()
+        >>> f"{data.qd.sel(link=2)[-1]:.4f} {data.qd.attrs['units']}"
+        '0.3936 rad/s'
+        """
+        from pendcore._views.export import to_xarray
+
+        return to_xarray(self)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # The scene comes first: if it cannot be pickled, its message says so best.
+        verified = None if self.accuracy is None else self.known_error
+        return type(self), (self.scene, self.run, self.name, self.accuracy, verified)
+
+    def __deepcopy__(self, memo: object) -> Solution:
+        # None of these objects ever changes, so the copy shares them.
+        verified = None if self.accuracy is None else self.known_error
+        return Solution(self.scene, self.run, self.name, self.accuracy, verified)
+
+    def __repr__(self) -> str:
+        from pendcore._views.table import text
+
+        return text(self)
+
+    def _repr_html_(self) -> str:
+        from pendcore._views.table import html
+
+        return html(self)
+
+    def plot(
+        self,
+        ax: Any = None,
+        *,
+        what: What = "angles",
+        label: str | None = None,
+        horizon: float | None = None,
+        t: npt.ArrayLike | None = None,
+        event: int | None = None,
+        link: int | None = None,
+        **line_properties: Any,
+    ) -> list[Artist]:
+        """Draw a figure; without ``what``, the textbook's: the angles, deg, over time, s.
+
+        Curves go from the first to the last time that was kept, or from start to end if there is
+        but one. A run without dense output is simulated anew where it is not known between them.
+
+        =================  ========================================================================
+        ``"angles"``       the absolute angle of each link, deg, over time
+        ``"rates"``        the rate of each link, rad/s, over time
+        ``"reactions"``    the force on each link at its joint, N, over time: x, y (downwards), size
+        ``"energy"``       kinetic, potential and total energy, J, over time; with ``ledger=True``
+                           the work and loss of every effect
+        ``"path"``         the path of the tip in the plane, with the chain at the start and the end
+        ``"phase"``        the rate of each link, rad/s, over its angle, rad
+        ``"section"``      a Poincare section: rate over angle of a ``link`` where an ``event``
+                           happened, an index into ``sol.events``
+        ``"strip"``        the chain at the times ``t``, s, (k,), side by side
+        ``"free_bodies"``  each link by itself with the forces on it, N, at the time ``t``, s;
+                           couples in joints are not drawn
+        =================  ========================================================================
+
+        Parameters
+        ----------
+        ax : Axes or array of Axes, optional
+            One axes; for angles and rates also one for each link, for reactions one for each joint,
+            for energy two with a ledger. Default: a new figure of pyplot's, which is not shown.
+            Where curves are drawn already, the next ones are dashed.
+        what : str
+            The figure.
+        label : str, optional
+            Name of this solution in the legend.
+        horizon : float, optional
+            rad. What lies past the time at which the estimated error passes it is shaded or pale
+            (`valid_until`: that takes further runs, when it is first asked for).
+        t, event, link
+            As above. Defaults: eight times along the curves, or where they begin; 0; 1.
+        **line_properties
+            Passed on to matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
+
+        Returns
+        -------
+        list of Artist
+            The lines; of poses also texts and arrows. ``artists[0].axes`` leads to the rest.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If there is no such figure, or a parameter is not one of it; in the words of ``sol(t)``
+            if the run kept no dense output and cannot be simulated anew: a function of the user's
+            gives other values now, say.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> first, second = sol.plot(label="section 2.1")
+        >>> second.axes.get_ylabel()  # first.axes.figure.savefig("angles.png") keeps the figure
+        'q2 (deg)'
+        >>> sol.plot(what="path")[0].axes.get_ylabel()
+        'y (m), downwards'
+        """
+        from pendcore._figures.plot import plot
+
+        return plot(
+            self, ax, what=what, label=label, horizon=horizon, t=t, event=event, link=link,
+            **line_properties,
+        )  # fmt: skip
+
+    def animate(
+        self,
+        *others: Solution,
+        names: tuple[str, ...] | None = None,
+        speed: float = 1.0,
+        fps: float = 30.0,
+        trace: float | None = 2.0,
+        reactions: bool = False,
+        energy: bool = False,
+        horizon: float | None = None,
+        beside: bool = False,
+    ) -> FuncAnimation:
+        """Return matplotlib's animation of the run, in true time; keep it while it is to move.
+
+        The parameters are those of `to_video`. In a notebook ``HTML(sol.animate().to_jshtml())``
+        shows it; `to_video` writes it far faster than ``animation.save``.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> animation = sol.animate(energy=True)
+        >>> len([*animation.new_frame_seq()])  # 5 s at 30 frames a second
+        151
+        """
+        from pendcore.films.animate import animate
+        from pendcore.films.stage import Choices
+
+        given = Choices(
+            speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
+            horizon=horizon, beside=beside,
+        )  # fmt: skip
+        return animate((self, *others), _names((self, *others), names), given)
+
+    def to_video(
+        self,
+        path: str | os.PathLike[str],
+        *others: Solution,
+        names: tuple[str, ...] | None = None,
+        speed: float = 1.0,
+        fps: float = 30.0,
+        trace: float | None = 2.0,
+        reactions: bool = False,
+        energy: bool = False,
+        horizon: float | None = None,
+        beside: bool = False,
+        size: tuple[int, int] | None = None,
+        progress: Progress = None,
+    ) -> Path:
+        """Write a film of the run, in true time; return where it is.
+
+        A run without dense output is simulated anew for it, or refused in the words of ``sol(t)``.
+
+        Parameters
+        ----------
+        path : path
+            Ends with ``.mp4`` (takes ffmpeg, or the package imageio-ffmpeg; without either, a GIF
+            is written, and a warning says so) or with ``.gif``. The file is complete or absent.
+        *others : Solution
+            More runs in the same film: on top of this one, or with ``beside`` next to it.
+        names : tuple of str, optional
+            What the legend calls the runs. Default: their own names, if there are several.
+        speed : float
+            How fast time passes; 1 is true time, 0.25 slow motion.
+        fps : float
+            Frames a second.
+        trace : float, optional
+            s of the run that the trace of the tip shows; None draws none.
+        reactions : bool
+            Whether arrows show the force on each link at its joint; the longest is that of the
+            largest force in the film.
+        energy : bool
+            Whether a strip below shows the energies of this run.
+        horizon : float, optional
+            rad; a run is drawn pale past the time until which its error is below this
+            (`Solution.valid_until`, which takes further runs).
+        beside : bool
+            Whether several runs are drawn side by side.
+        size : (int, int), optional
+            Width and height in pixels, even. Default: (1920, 1080), for a GIF (640, 360).
+        progress : as in `simulate`
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.to_video("swing.gif", speed=2).name
+        'swing.gif'
+        """
+        from pendcore.films.stage import Choices
+        from pendcore.films.video import to_video
+
+        given = Choices(
+            speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
+            horizon=horizon, beside=beside,
+        )  # fmt: skip
+        runs = self, *others
+        return to_video(runs, _names(runs, names), path, given, size, progress)
+
+    def to_html(self, path: str | os.PathLike[str], *, title: str | None = None) -> Path:
+        """Write the run as one page with the core inside, which opens from disk; return its path.
+
+        The page simulates by itself, with the bits of this run, and says so by both hashes. Its
+        reader drags links, changes every parameter, adds effects, chooses method and tolerance, and
+        sees reactions, energies, until when the run can be trusted, and what accuracy costs. Its
+        address holds the run that it shows. Pages of scenes with functions of one's own, and pages
+        made by an install without the core for browsers, play back what was computed here, and say
+        so. The file is complete or absent.
+
+        Parameters
+        ----------
+        path : path
+        title : str, optional
+            The headline. Default: the name of the run.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.to_html("run.html").name
+        'run.html'
+        """
+        from pendcore._cases.whole_file import whole_file
+        from pendcore.page.html import page_of
+
+        if Path(path).suffix.lower() not in (".html", ".htm"):
+            raise ValueError(f"path = {os.fspath(path)!r}: must end with .html")
+        page = page_of(self, title)
+        with whole_file(path) as file:
+            file.write_text(page, encoding="utf-8")
+        return Path(path)
+
+    def page(self, *, height: int = 900) -> NotebookPage:
+        """Return the page of `to_html` as a notebook shows it: alive, in exported notebooks, too.
+
+        ``height`` is in pixels. A notebook grows by the size of the page.
+
+        Examples
+        --------
+        >>> sol = pc.Case.textbook().simulate()
+        >>> sol.page()._repr_html_()[:15]  # a notebook calls this
+        '<iframe srcdoc='
+        """
+        from pendcore.page.html import page_of
+        from pendcore.page.notebook import NotebookPage
+
+        pixels = whole_number("height", height)
+        return NotebookPage(page_of(self), pixels)
+
+    def widget(self, *, height: int = 900) -> Any:
+        """Return the same page as an anywidget (which takes that package).
+
+        Its attribute ``case`` is the case that the page shows now, named as in a case file: what
+        its reader has dragged and set can be read in Python.
+
+        Examples
+        --------
+        >>> widget = pc.Case.textbook().simulate().widget()
+        >>> widget.case is None  # until a notebook shows it
+        True
+        """
+        from pendcore.page.html import page_of
+        from pendcore.page.notebook import widget_of
+
+        pixels = whole_number("height", height)
+        return widget_of(page_of(self), pixels)
+
+
+def _names(runs: tuple[Solution, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Return what the legend calls the runs; nothing for one that is alone."""
+    for one in runs:
+        if not isinstance(one, Solution):
+            raise TypeError(f"{one!r}: must be a Solution, to be shown beside this one")
+    if given is None:
+        return tuple(one.name if len(runs) > 1 else "" for one in runs)
+    if isinstance(given, str) or len(given) != len(runs):
+        raise ValueError(f"names = {given!r}: must be {len(runs)}, one for each run")
+    return tuple(
+        text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
+    )

@@ -1,0 +1,1 @@
+"""What is simulated: links, gravity, effects."""

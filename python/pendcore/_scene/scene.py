@@ -1,0 +1,396 @@
+"""What is simulated: links in a chain, gravity, and the effects that the scene has. SI units.
+
+x points right, **y points down**, the origin is the pivot. The angle ``q_i`` of link i is absolute,
+from +x towards +y: 0 is horizontal, pi/2 hangs straight down. Links and joints count from 1; joint
+i is where link i begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pendcore import _core
+from pendcore._messages.arguments import (
+    Floats,
+    finite_array,
+    link_array,
+    number,
+    vector,
+)
+from pendcore._messages.html import beside, drawing, table
+from pendcore._messages.warning import warn
+from pendcore._scene.effect_class import Effect
+from pendcore._scene.link import Link
+from pendcore._scene.parameters import changed
+
+if TYPE_CHECKING:
+    from pendcore._explanation.explanation import Explanation
+
+Member = TypeVar("Member")
+MOST_ROWS = 20
+"""The most links in the table of a notebook."""
+
+
+class Mobility(NamedTuple):
+    """The textbook's count of the degrees of freedom: ``M = 3 links - 2 c5 - c4``.
+
+    Attributes
+    ----------
+    links : int
+        Moving links; links that a lock joins count as one.
+    c5 : int
+        Joints with one degree of freedom (hinges).
+    c4 : int
+        Joints with two degrees of freedom.
+    degrees_of_freedom : int
+        ``M``.
+
+    Examples
+    --------
+    >>> pc.Scene.textbook().mobility()
+    Mobility(links=2, c5=2, c4=0, degrees_of_freedom=2)
+    >>> locked = pc.Scene.textbook().replace(effects=[pc.effects.Lock(joint=2)])
+    >>> locked.mobility().degrees_of_freedom
+    1
+    """
+
+    links: int
+    c5: int
+    c4: int
+    degrees_of_freedom: int
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False)
+class Scene:
+    """A chain of links on a pivot, and what acts on it, ready to be simulated.
+
+    Parameters
+    ----------
+    links : iterable of Link
+        From the pivot outwards, one or more.
+    gravity : float, default 9.807
+        Downward, m/s^2; finite. 0 is allowed.
+    effects : iterable of pendcore.effects.Effect
+        What acts besides gravity, in any number and order. Nothing else is simulated:
+        `explain` says what is and what is not.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If a value is out of its range; the message names link, value, range and unit.
+
+    Warns
+    -----
+    PendcoreWarning
+        If a value is allowed and implausible, such as more inertia than a link of that length
+        could have.
+
+    Notes
+    -----
+    A scene cannot be changed; ``scene.replace(gravity=1.62)`` makes another.
+
+    Examples
+    --------
+    >>> rods = [pc.Link(mass=1.0, length=1.0), pc.Link(mass=0.5, length=0.7)]
+    >>> damper = pc.effects.ViscousJoint(joint=2, damping=0.1)
+    >>> scene = pc.Scene(links=rods, effects=[damper])
+    >>> scene.effects
+    (ViscousJoint(joint=2, damping=0.1),)
+    """
+
+    links: tuple[Link, ...]
+    gravity: float = 9.807
+    effects: tuple[Effect, ...] = ()
+    _compiled: _core.Scene = field(init=False, compare=False)
+
+    def __init__(
+        self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
+    ) -> None:
+        self._compile(links, gravity, effects)
+        self._warn()
+
+    def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
+        links = _tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
+        effects = _tuple_of("effect", Effect, effects, "pendcore.effects")
+        gravity = number("gravity", gravity, "m/s^2")
+        acting = [effect._as_pair() for effect in effects]
+        rows = [(link.mass, link.length, link.center, link.inertia) for link in links]
+        object.__setattr__(self, "links", links)
+        object.__setattr__(self, "gravity", gravity)
+        object.__setattr__(self, "effects", effects)
+        object.__setattr__(self, "_compiled", _core.scene(rows, gravity, acting))
+
+    def _warn(self) -> None:
+        for message in self._compiled.warnings:
+            warn(message)
+
+    @classmethod
+    def textbook(cls) -> Self:
+        """Section 2.1 of the textbook: two uniform rods of 1 kg and 1 m, g = 9.807 m/s^2.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.links[1], scene.gravity
+        (Link(mass=1.0, length=1.0), 9.807)
+        """
+        return cls(links=[Link(mass=1.0, length=1.0), Link(mass=1.0, length=1.0)])
+
+    def replace(
+        self,
+        *,
+        links: Iterable[Link] | None = None,
+        gravity: float | None = None,
+        effects: Iterable[Effect] | None = None,
+    ) -> Self:
+        """Return a scene with other links, gravity or effects; the rest stays as it is.
+
+        Parameters
+        ----------
+        links, gravity, effects
+            As in `Scene`.
+
+        Examples
+        --------
+        >>> moon = pc.Scene.textbook().replace(gravity=1.62)
+        >>> moon.gravity, len(moon.links)
+        (1.62, 2)
+        """
+        return type(self)(
+            links=self.links if links is None else links,
+            gravity=self.gravity if gravity is None else gravity,
+            effects=self.effects if effects is None else effects,
+        )
+
+    __replace__ = replace  # copy.replace() of Python 3.13
+
+    def parameters(self) -> dict[str, float]:
+        """Return every number of the scene that has a name, in SI units.
+
+        Links and effects count from 1. Numbers that an effect leaves out are not among them, nor
+        are those of tables and splines. `with_parameters` and `pendcore.ensemble` take these names.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(2, damping=0.1)])
+        >>> known = scene.parameters()
+        >>> known["gravity"], known["link[1].mass"], known["effect[1].damping"]
+        (9.807, 1.0, 0.1)
+        """
+        return {name: value for name, _, value in _core.parameters(self._compiled)}
+
+    def with_parameters(self, values: Mapping[str, float]) -> Self:
+        """Return a scene with other values of some parameters; see `parameters` for their names.
+
+        A link that is a uniform rod stays one when its mass or its length changes, unless its
+        ``center`` or ``inertia`` is given as well.
+
+        Raises
+        ------
+        ValueError
+            If the scene has no parameter of that name; the message says what may be meant.
+        TypeError
+            If a name is no text.
+
+        Examples
+        --------
+        >>> longer = pc.Scene.textbook().with_parameters({"link[2].length": 1.5, "gravity": 1.62})
+        >>> longer.links[1], longer.gravity
+        (Link(mass=1.0, length=1.5), 1.62)
+        """
+        links, gravity, effects = changed(
+            self._compiled, self.links, self.gravity, self.effects, values
+        )
+        return type(self)(links=links, gravity=gravity, effects=effects)
+
+    def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
+        """Angular accelerations of the links: the right-hand side that is integrated.
+
+        A law that is smooth only in pieces, such as dry friction, is on the side that a forward run
+        would take. A locked joint does not turn: its rate, ``qd_i - qd_{i-1}``, must be zero; the
+        accelerations of any other state are not those of the scene.
+
+        Parameters
+        ----------
+        t : array_like, (...)
+            Time, s.
+        q, qd : array_like, (..., n)
+            Absolute angles, rad, and rates, rad/s. The leading axes broadcast.
+
+        Returns
+        -------
+        qdd : ndarray, (..., n)
+            rad/s^2.
+
+        Raises
+        ------
+        ValueError, TypeError
+            If an argument is not finite real numbers of that shape.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.accelerations(0.0, q=[0.0, 0.0], qd=[0.0, 0.0]).round(3)  # let go, horizontal
+        array([12.609, -4.203])
+        >>> scene.accelerations([0.0, 1.0], q=np.zeros((2, 2)), qd=[0.0, 0.0]).shape
+        (2, 2)
+        """
+        n = len(self.links)
+        found = self._compiled.acceleration_of_state(t, q, qd)
+        if found is not None:  # one state of plain numbers costs a microsecond, as in a loop
+            return found
+        times = finite_array("t", t, "s")
+        q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
+        try:
+            lead = np.broadcast_shapes(times.shape, q.shape[:-1], qd.shape[:-1])
+        except ValueError:
+            raise ValueError(
+                f"t, q, qd: shapes {times.shape}, {q.shape}, {qd.shape}: must broadcast, the last "
+                "axis of q and qd aside"
+            ) from None
+        return self._compiled.accelerations(
+            np.broadcast_to(times, lead).reshape(-1),
+            np.broadcast_to(q, (*lead, n)).reshape(-1, n),
+            np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
+        ).reshape(*lead, n)
+
+    def mass_matrix(self, q: npt.ArrayLike) -> Floats:
+        """Mass matrix of the equations of motion, symmetric and positive definite.
+
+        It includes payloads and rotors. It ignores locks: it is the matrix of the chain with all
+        its joints free.
+
+        Parameters
+        ----------
+        q : array_like, (..., n)
+            Absolute angles, rad.
+
+        Returns
+        -------
+        ndarray, (..., n, n)
+            kg m^2.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().mass_matrix([0.0, 0.0]).round(3)  # stretched out
+        array([[1.333, 0.5  ],
+               [0.5  , 0.333]])
+        """
+        n = len(self.links)
+        q = link_array("q", q, n, "rad")
+        return self._compiled.mass_matrix(q.reshape(-1, n)).reshape(*q.shape, n)
+
+    def mobility(self) -> Mobility:
+        """Count the degrees of freedom as the textbook does, ``M = 3 n - 2 c5 - c4``.
+
+        See `pendcore.Mobility`.
+
+        Examples
+        --------
+        >>> links, c5, c4, freedom = pc.Scene.textbook().mobility()
+        >>> 3 * links - 2 * c5 - c4 == freedom
+        True
+        """
+        return Mobility(*self._compiled.mobility())
+
+    def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
+        """Say what is simulated and what is not, what it costs, and how fast it moves.
+
+        Parameters
+        ----------
+        t : float, default 0
+            Time at which motors and pivot are looked at, s.
+        q : array_like, (n,), optional
+            Angles from which to look for equilibria, besides hanging and upright, rad. A `Lock`
+            without an angle holds its joint as it is in ``q``; if ``q`` is not given, as it is in
+            hanging and in upright, and a remark says so.
+
+        Returns
+        -------
+        Explanation
+            Print it, or take its fields; ``to_dict()`` for JSON.
+
+        Examples
+        --------
+        >>> told = pc.Scene.textbook().explain()  # print(told) shows it all
+        >>> hanging, upright = told.equilibria
+        >>> [f"{mode.frequency:.3f} Hz" for mode in hanging.modes]
+        ['0.426 Hz', '1.144 Hz']
+        """
+        from pendcore._explanation.explain import explain
+
+        start = None if q is None else vector("q", q, len(self.links), "rad")
+        (time,) = vector("t", t, 1, "s")
+        return explain(self, time, start)
+
+    def __repr__(self) -> str:
+        effects = f", effects={self.effects!r}" if self.effects else ""
+        return f"Scene(links={self.links!r}, gravity={self.gravity!r}{effects})"
+
+    def _repr_html_(self) -> str:
+        links = [
+            [str(i), *(f"{x:.6g}" for x in (one.mass, one.length, one.center, one.inertia))]
+            for i, one in enumerate(self.links[:MOST_ROWS], 1)
+        ]
+        left_out = len(self.links) - len(links)
+        links += [[f"and {left_out} more", "", "", "", ""]] * (left_out > 0)
+        head = ("link", "mass (kg)", "length (m)", "center (m)", "inertia (kg m^2)")
+        effects = [[str(i), repr(one)] for i, one in enumerate(self.effects, 1)]
+        below = table(effects, ("", "effect")) if effects else "<p>no effects</p>"
+        n = len(self.links)
+        slanted = np.linspace(0.35, 0.9, n)[np.newaxis]  # rad; a pose that shows every link
+        pose = self._compiled.positions(np.zeros(1), slanted)[0]
+        about = f"<p>gravity {self.gravity:.6g} m/s^2, downwards</p>"
+        return beside(about + table(links, head) + below, drawing([pose], None, f"{n} links"))
+
+    @classmethod
+    def _unpickled(
+        cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
+    ) -> Self:
+        scene = object.__new__(cls)
+        scene._compile(links, gravity, effects)
+        return scene
+
+    def __reduce__(self) -> tuple[object, tuple[object, ...]]:
+        # The compiled scene is made anew; what is implausible was said when it was first made.
+        return type(self)._unpickled, (self.links, self.gravity, self.effects)
+
+
+_OBJECT = {
+    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
+    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
+}
+
+
+def _tuple_of(
+    noun: str, kind: type[Member], values: Iterable[Member], what: str
+) -> tuple[Member, ...]:
+    remedy = f"must be a list of {what}"
+    try:
+        values = tuple(values)
+    except TypeError:
+        raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
+    for i, value in enumerate(values, start=1):
+        if isinstance(value, type) and issubclass(value, kind):
+            raise TypeError(
+                f"{noun} {i} = {value.__name__}: must be a {_OBJECT[noun]}; got the class itself"
+            )
+        if not isinstance(value, kind):
+            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
+    return values
+
+
+def require_scene(scene: object) -> None:
+    """Raise TypeError for anything else."""
+    if isinstance(scene, Scene):
+        return
+    told, remedy = f"scene = {scene!r}", ""
+    if isinstance(getattr(scene, "scene", None), Scene):
+        told = f"scene: is a {type(scene).__name__}"
+        remedy = "; case.simulate() runs a case" if hasattr(scene, "simulate") else ""
+    raise TypeError(f"{told}: must be a pendcore.Scene{remedy}")

@@ -1,0 +1,137 @@
+"""How well a run kept its energy, which tells of its error without further runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pendcore._run.solution import Solution
+from pendcore._scene.effect_class import KINDS
+from pendcore._scene.scene import Scene
+
+TOO_LARGE = "too large to trust this run: tighten rtol and atol (or the step)"
+
+
+class EnergyDrift(NamedTuple):
+    """Total energy over the kept times, the true start and the end that was really reached.
+
+    Attributes
+    ----------
+    start, end : float
+        Total energy, J.
+    largest_drift : float or None
+        The largest change since the start, J; where effects do work, the largest residual of the
+        ledger. None if effects do work and there is no ledger: nothing tells work from error.
+    largest_kinetic : float
+        J: the measure of the motion, as the zero of the potential energy is arbitrary. Where not
+        every step was kept, the largest that the total energy allows: what was kept may all be near
+        rest.
+    relative_drift : float or None
+        The drift as a share of the largest kinetic energy; None where nothing moves.
+    too_large : bool
+        Whether the drift is beyond a thousandth of the largest kinetic energy, or not a number:
+        too large to trust the run.
+    changed_by : list of str
+        The kinds of effects that do work, or lose energy.
+    ledger : bool
+        Whether a ledger tells how much they do.
+    """
+
+    start: float
+    end: float
+    largest_drift: float | None
+    largest_kinetic: float
+    relative_drift: float | None
+    too_large: bool
+    changed_by: list[str]
+    ledger: bool
+
+
+def has_every_step(solution: Solution) -> bool:
+    """Whether the kept times are those of the steps, and not those asked for."""
+    asked_for = solution.run.arguments["t_eval"] is not None
+    return solution.store in ("dense", "steps") and not asked_for
+
+
+def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
+    """Compute the drift from the states that were kept, or from one state in so many."""
+    run, asked = solution.run, solution.run.arguments
+    start = np.concatenate([asked["q0"], asked["qd0"]])
+    states = np.vstack([start, run.states[::every], run.y_reached])
+    times = np.concatenate([[asked["t_start"]], run.t[::every], [run.t_reached]])
+    n = states.shape[1] // 2
+    kinetic, potential = solution.scene._compiled.energy(times, states[:, :n], states[:, n:])
+    working = _kinds_that_do_work(solution.scene)
+    with np.errstate(all="ignore"):  # a blow-up's energies may be infinite; that is told in words
+        total = kinetic + potential
+        drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
+    ends = float(total[0]), float(total[-1])
+    if working:
+        residual = _residual(solution)
+        if residual is None:
+            bad = not np.isfinite(ends[1])
+            return EnergyDrift(*ends, None, moving, None, bad, working, ledger=False)
+        drift = residual
+    elif every > 1 or not has_every_step(solution):
+        moving = max(moving, float(total[0]) - _lowest_potential(solution.scene))
+    # The last bits of the potential energy are no drift, however slow the motion.
+    allowed = 1e-3 * moving + 1e-13 * float(np.abs(potential).max())
+    share = drift / moving if moving > 0 else None
+    too_large = not drift <= allowed
+    return EnergyDrift(*ends, drift, moving, share, too_large, working, asked["ledger"])
+
+
+def _kinds_that_do_work(scene: Scene) -> list[str]:
+    """Return the kinds of effects that change the total energy."""
+    present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
+    return [kind for kind in KINDS if kind in present]
+
+
+def _residual(solution: Solution) -> float | None:
+    """Return the largest residual of the ledger, J."""
+    if not solution.run.arguments["ledger"]:
+        return None
+    ledger = solution.energy().ledger
+    return None if ledger is None else float(np.abs(ledger.residual).max(initial=0.0))
+
+
+def _lowest_potential(scene: Scene) -> float:
+    """Return the lowest potential energy: every link hangs, or stands if its weight pulls up, J.
+
+    It is inf if a spring's energy is negative, as its stiffness is: then no pose is the lowest.
+    """
+    n = len(scene.links)
+    all_pull_down = all(link.center >= 0 for link in scene.links)
+    # Otherwise one link hangs at a time, and the others are level.
+    q = np.full((1, n), pi / 2) if all_pull_down else np.eye(n) * (pi / 2)
+    weightless = Scene._unpickled(scene.links, 0.0, scene.effects)
+    _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
+    _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
+    return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())
+
+
+def text(drift: Mapping[str, Any]) -> str:
+    """Return drift and share for people, from the fields of an `EnergyDrift`.
+
+    What is not finite may have become None in JSON.
+    """
+    if is_untold(drift):
+        return f"not known (changed by {_listed(drift['changed_by'])}): run with ledger=True"
+    size, share = drift["largest_drift"], drift["relative_drift"]
+    if size is None or not np.isfinite(size):
+        return "not a number"
+    of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
+    return f"{size:.1e} J{of_kinetic}"
+
+
+def is_untold(drift: Mapping[str, Any]) -> bool:
+    """Return whether effects change the energy and no ledger tells by how much."""
+    return bool(drift["changed_by"]) and not drift["ledger"]
+
+
+def _listed(kinds: list[str]) -> str:
+    *most, last = kinds
+    return f"{', '.join(most)} and {last}" if most else last

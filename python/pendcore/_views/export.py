@@ -1,0 +1,103 @@
+"""Solutions as pandas, xarray and spreadsheets know them."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Hashable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pendcore._cases.case import Case, has_own_functions
+from pendcore._messages.progress import callback, close
+from pendcore._run.solution import Solution
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+ROWS_AT_ONCE = 10_000
+"""The number of rows of a CSV file between two reports of progress."""
+_HINT = "needs {0}: pip install {0}"
+
+
+def to_pandas(solution: Solution) -> pd.DataFrame:
+    """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
+
+    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, unless an
+    effect or an event is a function.
+
+    Raises
+    ------
+    ImportError
+        If pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError:
+        raise ImportError("to_pandas() " + _HINT.format("pandas")) from None
+    links = range(1, len(solution.scene.links) + 1)
+    units = {f"q_{i}": "rad" for i in links} | {f"qd_{i}": "rad/s" for i in links}
+    frame = pd.DataFrame(
+        solution.y.T.copy(), columns=list(units), index=pd.Index(solution.t.copy(), name="time")
+    )
+    frame.attrs = {"units": {"time": "s", **units}}
+    frame.attrs |= _case(solution)
+    return frame
+
+
+def to_xarray(solution: Solution) -> xr.Dataset:
+    """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
+
+    The set's ``attrs["case"]`` is the TOML of what was simulated, unless an effect or an event is
+    a function.
+
+    Raises
+    ------
+    ImportError
+        If xarray is not installed.
+    """
+    try:
+        import xarray as xr
+    except ImportError:
+        raise ImportError("to_xarray() " + _HINT.format("xarray")) from None
+    links = range(1, len(solution.scene.links) + 1)
+    angle = {"units": "rad", "long_name": "absolute angle, from +x (right) towards +y (down)"}
+    rate = {"units": "rad/s", "long_name": "angular rate"}
+    return xr.Dataset(
+        {
+            "q": (("time", "link"), solution.q.copy(), angle),
+            "qd": (("time", "link"), solution.qd.copy(), rate),
+        },
+        coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
+        attrs=_case(solution),
+    )
+
+
+def write_csv(solution: Solution, path: Path) -> None:
+    """Write a row per time: t (s), q_1.. (rad), qd_1.. (rad/s), every number with all its digits.
+
+    The first row names columns and units. A jump has two rows at one time.
+    """
+    links = range(1, len(solution.scene.links) + 1)
+    names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
+    rows = np.column_stack([solution.t, solution.q, solution.qd])
+    report = callback(None, f"writing {path.name}")
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for begin in range(0, len(rows), ROWS_AT_ONCE):
+                writer.writerows(rows[begin : begin + ROWS_AT_ONCE].tolist())
+                if report is not None:
+                    report(min(begin + ROWS_AT_ONCE, len(rows)) / len(rows))
+    finally:
+        close(report)
+
+
+def _case(solution: Solution) -> dict[Hashable, Any]:
+    """Return the case as TOML, or nothing if an effect or an event is a function."""
+    if has_own_functions(solution):
+        return {}
+    return {"case": Case.of_solution(solution).to_toml()}

@@ -1,0 +1,212 @@
+"""The facts of a run: what was simulated, how it ended, what it took, how well energy was kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from math import degrees, isfinite
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+
+from pendcore import _core
+from pendcore._cases.case import Case
+from pendcore._explanation.not_modelled import absent
+from pendcore._run.accuracy import Accuracy
+from pendcore._run.solution import Solution
+from pendcore._scene.effect_class import Effect, Part
+from pendcore._views import energy_drift
+from pendcore._views.table import evaluations, listed, outcome
+from pendcore._views.trusted_digits import rounded, trusted_digits
+
+_MANY = 12
+"""The number of links up to which a table for people has a row for each."""
+
+
+def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
+    """Return the facts as JSON can hold them: SI units, rad; None where there is no number.
+
+    ``refusal`` is what an `AccuracyError` said, if the run comes from one.
+    """
+    case, run = Case.of_solution(solution), solution.run
+    n = len(case.scene.links)
+    drift = energy_drift.energy_drift(solution)
+    found = {
+        "name": case.name,
+        "links": [asdict(link) for link in case.scene.links],
+        "gravity": case.scene.gravity,
+        "effects": [_effect(effect) for effect in case.scene.effects],
+        "mobility": case.scene.mobility()._asdict(),
+        "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
+        "run": {"t_end": case.t_span[1]} | _run_options(solution),
+        "events": _events(solution),
+        "status": solution.status,
+        "message": solution.message,
+        "last_method": solution.run.last_method,
+        "success": solution.success,
+        "refusal": refusal or None,
+        "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
+        "statistics": solution.stats._asdict(),
+        "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
+        "energy": drift._asdict(),
+        "ledger": _ledger(solution),
+        "kept": {
+            "times": len(solution.t),
+            "every_step": energy_drift.has_every_step(solution),
+            "between_steps": solution.store == "dense",
+        },
+        "largest_reactions": [one._asdict() for one in solution.largest_reactions()],
+        "trusted_digits": trusted_digits(solution, drift),
+        "not_simulated": [absence._asdict() for absence in absent(case.scene)],
+        "version": _core.__version__,
+    }
+    return _json(found)  # type: ignore[no-any-return]
+
+
+def text(found: dict[str, Any]) -> str:
+    """Return the facts for people."""
+    blocks = [
+        [found["name"] or "chain of links"],
+        ["What was simulated", *_link_table(found), *_rows(_asked(found))],
+        ["What came of it", *_rows(_happened(found))],
+    ]
+    return "\n\n".join("\n".join(block) for block in blocks) + "\n"
+
+
+def _effect(effect: Effect) -> dict[str, Any]:
+    """Return the kind and the parameters of an effect; a part is a dict of its parameters."""
+    values = {
+        name: x.particulars() if isinstance(x, Part) else x
+        for name, x in effect.particulars().items()
+    }
+    return {"kind": effect.kind, **values, "text": repr(effect)}
+
+
+def _events(solution: Solution) -> list[dict[str, Any]]:
+    """Return each event asked for, and when it was found."""
+    return [
+        {"kind": event.kind, "text": repr(event), "times": [one.t for one in found]}
+        for event, found in zip(solution.events_asked_for(), solution.events, strict=True)
+    ]
+
+
+def _ledger(solution: Solution) -> dict[str, float] | None:
+    """Return the entries of the ledger at the last kept time, J, if the run kept a ledger."""
+    ledger = solution.energy().ledger
+    if ledger is None or not len(solution.t):
+        return None
+    return {name: float(entry[-1]) for name, entry in ledger.items()}
+
+
+def _run_options(solution: Solution) -> dict[str, Any]:
+    asked = solution.run.arguments
+    always = {key: asked[key] for key in ("method", "rtol", "atol")}
+    options = always | dict(Case.of_solution(solution).options)
+    options.pop("events", None)
+    if "step" in options:  # a fixed step takes the place of the tolerances
+        del options["rtol"], options["atol"]
+    return options
+
+
+def _link_table(found: dict[str, Any]) -> Iterator[str]:
+    yield "  link    mass (kg)   length (m)   center (m)   inertia (kg m^2)"
+    for i, link in enumerate(found["links"][:_MANY], start=1):
+        mass, length, center, inertia = link.values()
+        yield f"  {i:4} {mass:12.6g} {length:12.6g} {center:12.6g} {inertia:18.6g}"
+    if len(found["links"]) > _MANY:
+        yield f"   ... {len(found['links']) - _MANY} more"
+
+
+def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    start, run = found["start"], dict(found["run"])
+    n, c5, c4, freedom = found["mobility"].values()
+    yield "gravity", f"{found['gravity']:.6g} m/s^2, downward"
+    for i, effect in enumerate(found["effects"]):
+        yield "" if i else "effects", effect["text"]
+    yield "mobility", f"M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
+    yield "start", f"t = {start['t']:.6g} s, {_state(start, in_degrees=True)}"
+    yield "end", f"t = {run.pop('t_end'):.6g} s"
+    yield (
+        "method",
+        ", ".join([run.pop("method"), *(f"{key} {_brief(x)}" for key, x in run.items())]),
+    )
+    words = [absence["kind"].replace("_", " ") for absence in found["not_simulated"]]
+    yield "not simulated", ", ".join(words)
+
+
+def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    stats, end, energy = found["statistics"], found["end"], found["energy"]
+    yield "status", outcome(found["status"], found["message"])
+    if found["refusal"] is not None:
+        yield "refused", found["refusal"]
+    yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
+    for i, event in enumerate(found["events"]):
+        yield "" if i else "events", f"{event['text']}: {_times(event['times'])}"
+    yield "steps", f"{stats['accepted']} accepted, {stats['rejected']} rejected"
+    yield "", f"{stats['min_step']:.3g} ... {stats['max_step']:.3g} s long"
+    method = found["run"]["method"]
+    yield "work", evaluations(method, found["last_method"], stats["nfev"])
+    if found["accuracy"] is not None:
+        yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
+    if found.get("horizon") is not None:
+        yield "right to 0.1 rad", found["horizon"]
+    yield "energy drift", energy_drift.text(energy)
+    for i, (name, value) in enumerate((found["ledger"] or {}).items()):
+        yield "" if i else "ledger", f"{name} {value:.6g} J"
+    if energy["too_large"]:
+        yield "", energy_drift.TOO_LARGE
+    yield from _largest_reactions(found)
+
+
+def _largest_reactions(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    largest, kept = found["largest_reactions"], found["kept"]
+    for one in largest[:_MANY]:
+        force = "beyond the range of doubles"
+        if one["force"] is not None:
+            force = f"{rounded(one['force'], found['trusted_digits']):.6g} N"
+        when = "just before t" if one["just_before"] else "at t"
+        when = "throughout" if one["steady"] else f"{when} = {one['t']:.6g} s"
+        name = "largest reaction" if one["joint"] == 1 else ""
+        yield name, f"joint {one['joint']}: {force} {when}"
+    if len(largest) > _MANY:
+        yield "", f"... {len(largest) - _MANY} more joints"
+    if not kept["between_steps"]:
+        times = kept["times"]
+        yield "" if times else "largest reaction", f"among the {times} kept time{'s'[: times != 1]}"
+
+
+def _state(at: dict[str, Any], in_degrees: bool = False) -> str:
+    q = f"q = ({listed(at['q'])}) rad"
+    if in_degrees:
+        q += f" = ({listed([degrees(x) for x in at['q']])}) deg"
+    return f"{q}, qd = ({listed(at['qd'])}) rad/s"
+
+
+def _times(times: list[float]) -> str:
+    if not times:
+        return "not found"
+    shown = [f"{t:.6g}" for t in times[:_MANY]] + ["..."] * (len(times) > _MANY)
+    return f"{len(times)} found, t = {', '.join(shown)} s"
+
+
+def _brief(value: Any) -> str:
+    return f"({listed(value)})" if isinstance(value, list) else str(value)
+
+
+def _rows(pairs: Iterator[tuple[str, str]]) -> Iterator[str]:
+    for name, value in pairs:
+        first, *more = wrap(value, 76)
+        yield f"  {name:16}  {first}"
+        yield from (f"{'':20}{line}" for line in more)
+
+
+def _json(value: Any) -> Any:
+    """JSON knows no tuples, no NumPy, and neither infinities nor NaN."""
+    if isinstance(value, dict):
+        return {key: _json(x) for key, x in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _json(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_json(x) for x in value]
+    return None if isinstance(value, float) and not isfinite(value) else value

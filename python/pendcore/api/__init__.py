@@ -1,1 +1,0 @@
-"""What a user holds: scenes and solutions whose methods lead to all the rest."""

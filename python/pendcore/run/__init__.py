@@ -1,1 +1,0 @@
-"""One run: what is asked for, the call of the core, and its plain result."""

@@ -1,1 +1,0 @@
-"""What is simulated, as plain data: links, gravity, effects."""
