@@ -117,7 +117,7 @@ def loosest_of_each(one: Regular) -> list[tuple[str, float]]:
 
 def again(made: TrialRun) -> Timed:
     """Return what makes a run of the search once more."""
-    asked = made.solution.run.arguments
+    asked = made.solution._run.arguments
     choice = Choice(made.method, made.rtol, atol_beside(made.rtol), asked["compensated"])
     return partial(
         run, start_of(made.solution), choice, asked["t_eval"], max_step=asked["max_step"]

@@ -71,11 +71,11 @@ def walks(steps: list[int], starts: int, compensated: bool) -> npt.NDArray[np.fl
         for q0 in rng.uniform(np.pi / 2 - 0.9, np.pi / 2 + 0.9, (starts, 2)):
             how = {"method": "dopri5", "store": "end", "step": FINE, "compensated": compensated}
             sol = pc.simulate(BOOK, (0, 0), q0, **how)
-            begun = energy(sol.run.__getstate__())
+            begun = energy(sol._run.__getstate__())
             row = []
             for count in steps:
                 sol = sol.resume((count + 0.5) * FINE, max_steps=10**10)
-                state = sol.run.__getstate__()
+                state = sol._run.__getstate__()
                 assert state["position_accepted"] == count
                 row.append(float(energy(state) - begun))
             rows.append(row)
@@ -91,7 +91,7 @@ def time_kept(steps: int) -> dict[str, Any]:
     """Return how far the time of fixed steps is from their number times their size, s."""
     sol = pc.simulate(BOOK, q0=0.3, t_span=(0, 1.01 * steps * STEP), method="dopri5",
                       step=STEP, store="end", max_steps=steps, on_failure="ignore")  # fmt: skip
-    state = sol.run.__getstate__()
+    state = sol._run.__getstate__()
     exact = steps * Fraction(STEP)
     plain = float(np.add.accumulate(np.full(steps, STEP))[-1])
     return {

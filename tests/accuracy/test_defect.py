@@ -46,7 +46,7 @@ def value(coefficients: list[Any], theta: Any) -> Any:
 
 def exact_couples(sol: pc.Solution) -> np.ndarray:
     """Return each step's largest couples on the same curve and grid, in forty digits."""
-    state, n = sol.run.__getstate__(), len(sol.scene.links)
+    state, n = sol._run.__getstate__(), len(sol.scene.links)
     steps = len(state["dense_h"])
     rows = np.asarray(state["dense_coefficients"]).reshape(steps, -1, 2 * n)
     grid = 4 * rows.shape[1]
@@ -136,7 +136,7 @@ def test_an_exact_curve_has_none_but_rounding() -> None:
 def test_it_sees_a_wrong_coefficient(link: int) -> None:
     """A rate wrong by 1e-6 theta^2 (1 - theta)^2 in a step costs its slope times the inertia."""
     sol = run(BOOK, "dop853", rtol=1e-12, atol=1e-14)
-    state = sol.run.__getstate__()
+    state = sol._run.__getstate__()
     h = state["dense_h"][3]
     wrong = np.array(state["dense_coefficients"]).reshape(len(state["dense_h"]), -1, 4)
     wrong[3, 2:5, 2 + link] += 1e-6 * np.array([1, -2, 1])

@@ -101,7 +101,7 @@ def test_errors_are_kept_where_states_are(name: str, way: defect_correction.Way,
 def test_errors_at_ends_of_steps_and_parts_are_those_within_them() -> None:
     start, way = SCENES["textbook"], defect_correction.SERIES_6_5_TWICE
     dense, whole = corrected(start, start.scene, way)
-    halves = np.sort(np.append(dense.run.step_starts, whole.t[6::12]))[1:]
+    halves = np.sort(np.append(dense._run.step_starts, whole.t[6::12]))[1:]
     choice = Choice("taylor", 1e-6, atol_beside(1e-6))
     correction = _core.DefectCorrection([(start.scene._compiled, start.q0, way.points)], 2)
     run(start, choice, halves, correction=correction)

@@ -64,4 +64,4 @@ def test_being_watched_changes_no_bit(run: Drawn, shares: list[float], ledger: b
     assert np.array_equal(dense.y, plain.y)
     assert np.array_equal(sampled.t, times)
     assert np.array_equal(sampled.y, dense(times))
-    assert np.array_equal(sampled.run.y_reached, plain.y[:, -1])
+    assert np.array_equal(sampled._run.y_reached, plain.y[:, -1])

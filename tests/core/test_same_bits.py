@@ -70,7 +70,7 @@ print(_core.instruction_set())
 for sol in runs:
     assert sol.success
     digest = hashlib.sha256()
-    energy, dense = sol.energy(), sol.run.__getstate__()["dense_coefficients"]
+    energy, dense = sol.energy(), sol._run.__getstate__()["dense_coefficients"]
     for part in (sol.t, sol.y, dense, sol.accelerations(), sol.reactions(), sol.positions(),
                  energy.kinetic, energy.potential):
         digest.update(np.ascontiguousarray(part).tobytes())

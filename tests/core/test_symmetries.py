@@ -81,8 +81,8 @@ def test_other_units_of_time_change_no_bit(method: str, run: Drawn, powers: list
     one, other = run.simulate(), in_units(run, Units(kg, m, s)).simulate()
     same_steps(one, other, s=s)
     joule = kg * (m / s) ** 2
-    for name, entry in one.run.ledger.items():
-        assert np.array_equal(other.run.ledger[name], entry * joule), name
+    for name, entry in one._run.ledger.items():
+        assert np.array_equal(other._run.ledger[name], entry * joule), name
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
@@ -148,7 +148,7 @@ def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
     """Return the states at fifths of the span; the run must get there."""
     sol = run.simulate(**changes)
     assert sol.status in ("finished", "stuck", "at_rest"), sol.message
-    return sol(np.linspace(0, 1, 6) * sol.run.t_reached)
+    return sol(np.linspace(0, 1, 6) * sol._run.t_reached)
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
@@ -188,9 +188,9 @@ def test_there_and_back_is_where_it_began(method: str, run: Drawn) -> None:
     n = len(run.q0)
     there = run.simulate(method=method)
     assert there.status == "finished", there.message
-    end = there.run.y_reached
+    end = there._run.y_reached
     back = Drawn(run.scene, end[:n], end[n:], run.t_span[::-1], run.options)
-    near(back.simulate(method=method).run.y_reached, [*run.q0, *run.qd0])
+    near(back.simulate(method=method)._run.y_reached, [*run.q0, *run.qd0])
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)

@@ -24,7 +24,7 @@ def test_a_run_that_ends_early_is_drawn_as_far_as_it_went(options: Any, t_span: 
     solution = motion.solved(case)
     assert solution.status in ("event", "max_steps")
     assert len(solution.t) == motion.POINTS
-    assert solution.t[-1] == solution.run.t_reached != t_span[1]
+    assert solution.t[-1] == solution._run.t_reached != t_span[1]
     text = report(Derivation(DAMPED), case, solution).markdown()
     assert "| change of $T + V$ | $0$ |" not in text
     ledger = solution.energy().ledger

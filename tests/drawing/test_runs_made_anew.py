@@ -35,7 +35,7 @@ def data_of(run: pc.Solution) -> Any:
 def test_a_page_ends_where_an_event_ended_the_run() -> None:
     run = few(TEXTBOOK, events=[BOTTOM])
     told = data_of(run)["case"]["run"]
-    assert told["t_end"] == run.run.t_reached < 10
+    assert told["t_end"] == run._run.t_reached < 10
     assert "t_eval" not in told
     assert data_of(few(TEXTBOOK))["case"]["run"]["t_end"] == 10
 
@@ -167,7 +167,7 @@ def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(
 
 def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(TEXTBOOK, store="end")
-    degree = simulate(TEXTBOOK).run.dense_degree
+    degree = simulate(TEXTBOOK)._run.dense_degree
     monkeypatch.setattr(dense_output, "MOST_BYTES", 8 * run.stats.accepted * 4 * (degree + 1) - 1)
     with pytest.raises(ValueError, match=SENTENCE + "it would take .* GiB"):
         run.plot(axes(2))

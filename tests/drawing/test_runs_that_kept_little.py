@@ -24,14 +24,14 @@ def pair(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[pc.Solution, p
 def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.Solution]) -> None:
     kept, dense = pair
     if kept.accuracy is None:  # the runs that an error asks for depend on what is kept
-        assert kept.run.t_reached == dense.run.t_reached
+        assert kept._run.t_reached == dense._run.t_reached
     else:
         dense = pc.simulate(
             kept.scene, q0=[1.8, 2.5], t_span=(0, 10), method=kept.method,
-            **{name: kept.run.arguments[name] for name in ("rtol", "atol", "compensated")},
+            **{name: kept._run.arguments[name] for name in ("rtol", "atol", "compensated")},
         )  # fmt: skip
     film = stage(kept, reactions=True, trace=np.inf)
-    low, high = sorted([dense.run.arguments["t_start"], dense.run.t_reached])
+    low, high = sorted([dense._run.arguments["t_start"], dense._run.t_reached])
     at = np.clip(film.times, low, high)
     state = dense(at)
     n = len(kept.scene.links)

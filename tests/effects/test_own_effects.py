@@ -195,8 +195,8 @@ def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
         if sol is None:
             continue
         solutions += 1
-        assert sol.run.t_reached == sol.t[-1]
-        assert np.array_equal(sol.run.y_reached, sol.y[:, -1])
+        assert sol._run.t_reached == sol.t[-1]
+        assert np.array_equal(sol._run.y_reached, sol.y[:, -1])
         assert all(event.t <= sol.t[-1] for event in sol.events[0])
     assert solutions > 9
 
@@ -237,7 +237,7 @@ def test_a_function_lives_as_long_as_what_runs_under_it():
 
     function, alive = make()
     run = pc.simulate(scene(fx.User(function)), **START)
-    core = run.run
+    core = run._run
     del function
     gc.collect()
     expected = pc.simulate(scene(fx.User(damp)), **START).resume(3.0)

@@ -174,6 +174,6 @@ DAMAGE: dict[str, Any] = {
 def test_damaged_events_are_refused(field: str) -> None:
     sol = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 1), events=[ev.LinkAngle(1, 1.0)])
     assert len(sol.events[0]) == 1
-    state = sol.run.__getstate__() | {field: DAMAGE[field]}
+    state = sol._run.__getstate__() | {field: DAMAGE[field]}
     with pytest.raises(ValueError, match=r"do not fit together|cannot come from a file"):
         _core.Run.__new__(_core.Run).__setstate__(state)

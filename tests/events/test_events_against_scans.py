@@ -27,7 +27,7 @@ LAST_BITS = 8
 
 def pieces(sol: pc.Solution) -> Iterator[tuple[float, float, Array]]:
     """Yield start, size and coefficients (degree + 1, dimension) of each step's polynomial."""
-    state = sol.run.__getstate__()
+    state = sol._run.__getstate__()
     steps = len(state["dense_h"])
     rows = state["dense_coefficients"].reshape(steps, state["dense_degree"] + 1, -1)
     yield from zip(state["dense_start"], state["dense_h"], rows, strict=True)

@@ -110,10 +110,10 @@ def test_a_run_that_stops_at_events_goes_on_as_if_it_never_had(
     while sol.status == "event":
         stops += 1
         t, found = sol.t[-1] if len(sol.t) else 0.0, in_numbers(sol)
-        assert all(one.t <= sol.run.t_reached for each in sol.events for one in each)
+        assert all(one.t <= sol._run.t_reached for each in sol.events for one in each)
         for each, all_of_them in zip(found, in_numbers(whole), strict=True):
             assert each == all_of_them[: len(each)]
-        assert t <= sol.run.t_reached
+        assert t <= sol._run.t_reached
         if stops % 3 == 1:
             sol = pickle.loads(pickle.dumps(sol))
         elif stops % 3 == 2:
@@ -214,7 +214,7 @@ def test_an_event_within_the_last_bit_of_the_start(store: str) -> None:
         how["t_eval"] = 1e9 + how["t_eval"]
     sol = pc.simulate(rod, q0=1.0, qd0=1.0, t_span=(1e9, 1e9 + 10), **how)
     assert sol.status == "event"
-    assert sol.events[0][0].t == sol.run.t_reached == 1e9
+    assert sol.events[0][0].t == sol._run.t_reached == 1e9
     assert sol.events[0][0].q[0] == pytest.approx(1.0 + 1e-9, abs=1e-15)
     longer = pickle.loads(pickle.dumps(sol)).resume(1e9 + 10)
     free = pc.simulate(rod, q0=1.0, qd0=1.0, t_span=(1e9, 1e9 + 10), **how | {"events": []})

@@ -44,7 +44,7 @@ def is_ordinary(drawn: Drawn, sol: pc.Solution) -> bool:
 
 
 def _end(sol: pc.Solution) -> str:
-    return f"{sol.status} at {sol.run.t_reached!r}"
+    return f"{sol.status} at {sol._run.t_reached!r}"
 
 
 def says_how_it_ended(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
@@ -56,7 +56,7 @@ def says_how_it_ended(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[st
         yield f"the law chatters: {sol.message}"
     if len(sol.message) < 10:
         yield f"message {sol.message!r} says nothing"
-    reached = sol.run.t_reached
+    reached = sol._run.t_reached
     if sol.status == "finished" and reached != drawn.t_span[1]:
         yield f"finished at {reached}, not at {drawn.t_span[1]}"
     if not min(drawn.t_span) <= reached <= max(drawn.t_span):
@@ -79,11 +79,11 @@ def times_run_one_way(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[st
 
 def is_finite(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
     """What is kept was reached, and what was reached is finite, also where the run failed."""
-    for name, values in {"t": sol.t, "y": sol.y, "the end": sol.run.y_reached}.items():
+    for name, values in {"t": sol.t, "y": sol.y, "the end": sol._run.y_reached}.items():
         if not np.isfinite(values).all():
             yield f"{name} is not finite, status {sol.status!r}"
     if drawn.options.get("ledger"):
-        for name, values in sol.run.ledger.items():
+        for name, values in sol._run.ledger.items():
             if not np.isfinite(values).all():
                 yield f"ledger.{name} is not finite, status {sol.status!r}"
 
@@ -91,7 +91,7 @@ def is_finite(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iterator[str]:
 def dense_output_meets_the_steps(drawn: Drawn, sol: pc.Solution, choices: Choices) -> Iterator[str]:
     if sol.store != "dense":
         return
-    start, end = drawn.t_span[0], sol.run.t_reached
+    start, end = drawn.t_span[0], sol._run.t_reached
     shares = np.array([choices.real(0, 1) for _ in range(5)])
     times = np.clip(start + shares * (end - start), min(start, end), max(start, end))
     between = sol(times)
@@ -112,9 +112,9 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
         return
     if "the ledger" in sol.message + other.message:
         return  # only a run with a ledger ends where the ledger overflows
-    if (sol.status, sol.run.t_reached) != (other.status, other.run.t_reached):
+    if (sol.status, sol._run.t_reached) != (other.status, other._run.t_reached):
         yield f"with {changes}: {_end(other)}, not {_end(sol)}"
-    elif not same(sol.run.y_reached, other.run.y_reached):
+    elif not same(sol._run.y_reached, other._run.y_reached):
         yield f"with {changes}: another end"
 
 
@@ -137,7 +137,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
     )
     if sol.status in ("max_steps", "max_turns") or "time_limit" in (part.status, whole.status):
         return  # the whole run was given more steps, or turns
-    if (whole.status, whole.run.t_reached) != (sol.status, sol.run.t_reached):
+    if (whole.status, whole._run.t_reached) != (sol.status, sol._run.t_reached):
         yield f"resumed after {_end(part)}: {_end(whole)}, not {_end(sol)}"
     elif not same(whole.t, sol.t) or not same(whole.y, sol.y):
         yield "resumed: other states"
@@ -149,7 +149,7 @@ def events_are_where_they_are_told(drawn: Drawn, sol: pc.Solution, _: Choices) -
         yield "ended at an event, and none is terminal"
     if not asked:
         return
-    start, end = drawn.t_span[0], sol.run.t_reached
+    start, end = drawn.t_span[0], sol._run.t_reached
     direction = -1.0 if end < start else 1.0
     for event, found in zip(asked, sol.events, strict=True):
         times = np.array([one.t for one in found])

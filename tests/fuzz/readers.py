@@ -147,11 +147,11 @@ def use(solution: pc.Solution) -> None:
     solution.t, solution.y, solution.stats, solution.message, solution.success, solution.case()
     repr(solution), solution.relative_angles(), solution.positions(), solution.reactions()
     solution.energy()
-    reached = solution.run.t_reached
+    reached = solution._run.t_reached
     if solution.store == "dense":
-        solution(np.linspace(solution.run.arguments["t_start"], reached, 5))
+        solution(np.linspace(solution._run.arguments["t_start"], reached, 5))
     # Whatever the file says, STEPS bounds the run if it goes on.
-    for end in (reached, reached + 0.5, reached - 0.5, solution.run.arguments["t_end"]):
+    for end in (reached, reached + 0.5, reached - 0.5, solution._run.arguments["t_end"]):
         try:
             solution.resume(end, **STEPS)
         except REFUSALS:
@@ -207,7 +207,7 @@ def a_store(choices: Choices) -> None:
 def a_state(choices: Choices) -> None:
     solution = choices.one_of(whole_solutions())
     run = _core.Run.__new__(_core.Run)
-    run.__setstate__(damage.state(choices, solution.run.__getstate__()))
+    run.__setstate__(damage.state(choices, solution._run.__getstate__()))
     use(pc.Solution(solution.scene, run))
 
 

@@ -24,7 +24,7 @@ COMPENSATED = [name for name, method in METHODS.items() if method["compensates"]
 
 
 def low_part(sol: pc.Solution) -> np.ndarray:
-    return sol.run.__getstate__()["position_stepper"]
+    return sol._run.__getstate__()["position_stepper"]
 
 
 @pytest.mark.parametrize("method", COMPENSATED)
@@ -70,7 +70,7 @@ def test_high_and_low_part_together_are_the_sum_to_thirty_digits(method: str) ->
         store="end",
         compensated=True,
     )
-    state = sol.run.__getstate__()
+    state = sol._run.__getstate__()
     steps = round(state["position_t"] * 2**5)
     found = Fraction(state["position_y"][0]) + Fraction(state["position_stepper"][0])
     increment = found - Fraction(1 / 3)
@@ -101,7 +101,7 @@ def test_a_ledger_changes_no_bit_of_a_compensated_run(method: str, links: int) -
 def test_the_low_part_is_below_the_last_bit() -> None:
     how = {"method": "dop853", "max_step": 1e-3, "compensated": True}
     sol = pc.simulate(BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 20), **how)
-    y = sol.run.__getstate__()["position_y"]
+    y = sol._run.__getstate__()["position_y"]
     assert (np.abs(low_part(sol)) <= 0.5 * np.spacing(np.abs(y))).all()
 
 
@@ -134,7 +134,7 @@ def test_a_low_part_of_another_state_is_refused() -> None:
     begun = pc.simulate(
         BOOK, q0=[0.8, 1.0], qd0=0, t_span=(0, 1), method="dop853", compensated=True
     )
-    state = begun.run.__getstate__() | {"position_stepper": [1e-20]}
+    state = begun._run.__getstate__() | {"position_stepper": [1e-20]}
     run = _core.Run.__new__(_core.Run)
     run.__setstate__(state)
     with pytest.raises(ValueError, match=r"the rounding errors kept"):

@@ -217,8 +217,8 @@ def test_a_method_that_is_none_is_refused_with_the_rule_among_those_there_are() 
 
 def test_a_run_of_before_the_rule_is_the_pair_that_it_was() -> None:
     kept = default(BOOK, method="dopri5-radau5")
-    state = kept.run.__getstate__()
-    again = type(kept.run).__new__(type(kept.run))
+    state = kept._run.__getstate__()
+    again = type(kept._run).__new__(type(kept._run))
     again.__setstate__(state | {"method": "auto"})
     assert again.method == "dopri5-radau5"
 

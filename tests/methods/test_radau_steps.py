@@ -110,5 +110,5 @@ def test_errors_are_those_of_the_method_written_out_in_python(
     run = written_out(case, 2.0, **how)
     # one step more is begun, and cut: what is kept is from before it
     sol = solve(case, 0.5 * (run.t[steps] + run.t[steps + 1]), **how)
-    found = 2.0 ** sol.run.__getstate__()["position_log2_error_before"]
+    found = 2.0 ** sol._run.__getstate__()["position_log2_error_before"]
     assert found == pytest.approx(max(run.errors[steps - 1], 1e-4), rel=1e-6)

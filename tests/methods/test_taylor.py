@@ -224,7 +224,7 @@ def test_orders_are_those_that_the_pages_tell():
     orders = [
         pc.simulate(
             BOOK, q0=START, qd0=0, t_span=(0, 0.01), method="taylor", rtol=tol, atol=0
-        ).run.dense_degree
+        )._run.dense_degree
         for tol in [0.5, *(10.0**-k for k in range(1, 18)), 1e-300]
     ]
     assert orders == sorted(orders)
@@ -246,7 +246,7 @@ def test_dense_output_is_finite_where_powers_of_the_step_overflow() -> None:
 
 def continued_with_unit_of_time(factor):
     begun = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 1), method="taylor")
-    state = begun.run.__getstate__()
+    state = begun._run.__getstate__()
     (unit,) = state["position_stepper"]
     state["position_stepper"] = [factor * unit]
     run = pc._core.Run.__new__(pc._core.Run)

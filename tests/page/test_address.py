@@ -75,10 +75,10 @@ def test_the_case_of_a_page_comes_back_from_its_address(page: Any) -> None:
     (found,) = read(page, address(page["case"]))
     assert json.loads(found["text"]) == page["case"]
     assert read(page, found["again"].removeprefix("#case=")) == [found]
-    assert pc.read_case(found["toml"]).simulate().run.fingerprint == run().run.fingerprint
+    assert pc.read_case(found["toml"]).simulate()._run.fingerprint == run()._run.fingerprint
     made: dict[str, Any] = {}
     exec(found["python"], made)
-    assert made["sol"].run.fingerprint == run().run.fingerprint
+    assert made["sol"]._run.fingerprint == run()._run.fingerprint
 
 
 def test_every_option_and_effect_that_a_page_can_have_is_known(page: Any) -> None:

@@ -50,7 +50,7 @@ def test_dragging_the_tip_starts_the_run_elsewhere(
     )
     assert moved[1] == pytest.approx(wanted, abs=0.05)
     run = pc.simulate(sol.scene, q0=moved, t_span=(0, 8))
-    assert page.ask("pendcorePage.hash") == run.run.fingerprint
+    assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
 def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:
@@ -143,7 +143,7 @@ def test_sliders_change_parameters_and_the_run(
     damped = pc.effects.ViscousJoint(joint=2, damping=0.5)
     scene = sol.scene.replace(effects=[damped])
     run = pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 8))
-    assert page.ask("pendcorePage.hash") == run.run.fingerprint
+    assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
 @pytest.mark.parametrize(("name", "typed"), [("mass (kg)", "0.8"), ("length (m)", "0.35")])
@@ -210,7 +210,7 @@ def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: 
     page = opened(run)
     page.wait("pendcorePage.validUntil !== null")
     assert page.ask("document.querySelector('#method input').value") == "7"
-    assert page.text("bits").endswith(f"= {run.run.fingerprint}")
+    assert page.text("bits").endswith(f"= {run._run.fingerprint}")
 
 
 def test_fixed_steps_keep_their_method_until_another_is_chosen(
@@ -281,7 +281,7 @@ def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened:
         "f.dispatchEvent(new Event('input'))"
     )
     run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
-    assert page.ask("pendcorePage.hash") == run.run.fingerprint
+    assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
 def drawn(page: Any) -> list[dict[str, Any]]:

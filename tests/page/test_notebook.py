@@ -100,7 +100,7 @@ def test_the_page_lives_in_a_frame(
     browser.switch_to.frame(browser.find_element("tag name", "iframe"))
     try:
         told = waited(browser, "document.getElementById('bits')?.textContent || ''")
-        assert told == f"the bits of Python: hash {sol.run.fingerprint} = {sol.run.fingerprint}"
+        assert told == f"the bits of Python: hash {sol._run.fingerprint} = {sol._run.fingerprint}"
     finally:
         browser.switch_to.default_content()
 

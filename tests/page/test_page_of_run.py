@@ -62,7 +62,7 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     )  # fmt: skip
     page = opened(run)
     told = page.text("bits")
-    assert told == f"the bits of Python: hash {run.run.fingerprint} = {run.run.fingerprint}"
+    assert told == f"the bits of Python: hash {run._run.fingerprint} = {run._run.fingerprint}"
     states = np.array(page.ask("[1.7, 3.9].map((t) => [...pendcorePage.run.state(t)])"))
     assert np.array_equal(states, pc.simulate(
         run.scene, q0=start["q0"], qd0=start["qd0"], t_span=(start["t0"], start["t_end"]),
@@ -76,7 +76,7 @@ def test_a_hash_that_is_not_pythons_is_told(
     monkeypatch.setattr(html, "_plain_case", lambda *_: {**plain(*_), "gravity": 9.8})
     told = opened(sol).text("bits")
     assert told.startswith("not the bits of Python: hash ")
-    assert told.endswith(f"Python's {sol.run.fingerprint}")
+    assert told.endswith(f"Python's {sol._run.fingerprint}")
 
 
 plain = html._plain_case
@@ -84,7 +84,7 @@ plain = html._plain_case
 
 def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, opened: Open) -> None:
     run = pc.simulate(sol.scene, q0=0.5, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
-    assert opened(run).text("bits").endswith(f"= {run.run.fingerprint}")
+    assert opened(run).text("bits").endswith(f"= {run._run.fingerprint}")
 
 
 def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
@@ -95,14 +95,14 @@ def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
     page.do("pendcorePage.given.gravity = 3.7; pendcorePage.changed()")
     (tmp_path / "case.toml").write_text(page.copied("copy-toml"))
     again = pc.read_case(tmp_path / "case.toml").simulate()
-    assert again.run.fingerprint == page.ask("pendcorePage.hash")
+    assert again._run.fingerprint == page.ask("pendcorePage.hash")
     assert again.scene.gravity == 3.7
     made: dict[str, Any] = {}
     exec(page.copied("copy-python"), made)
-    assert made["sol"].run.fingerprint == again.run.fingerprint
+    assert made["sol"]._run.fingerprint == again._run.fingerprint
     link = page.copied("copy-link")
     other = opened(sol, "#" + link.partition("#")[2])
-    assert other.ask("pendcorePage.hash") == again.run.fingerprint
+    assert other.ask("pendcorePage.hash") == again._run.fingerprint
 
 
 def test_an_address_that_is_refused_shows_the_run_of_the_page(
@@ -159,7 +159,7 @@ def test_a_run_with_events_has_a_hash_of_its_own(sol: pc.Solution, opened: Open)
     run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), events=[down])
     page = opened(run)
     assert re.fullmatch("hash [0-9a-f]{16}", page.text("bits"))
-    assert page.ask("pendcorePage.hash") == sol.run.fingerprint
+    assert page.ask("pendcorePage.hash") == sol._run.fingerprint
 
 
 def test_a_backward_run_is_trusted_backward(opened: Open) -> None:

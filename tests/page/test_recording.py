@@ -24,7 +24,7 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
     monkeypatch.setattr(html, "core_for_browsers", lambda: None)
     page = opened(sol)
     assert "no core for browsers (`make page` in a clone builds it" in page.text("about")
-    assert page.text("bits") == f"played back; Python's hash {sol.run.fingerprint}"
+    assert page.text("bits") == f"played back; Python's hash {sol._run.fingerprint}"
     page.do("pendcorePage.go(2)")
     shown = page.ask("pendcorePage.t")
     assert shown == pytest.approx(2, abs=1 / 60)

@@ -101,7 +101,7 @@ def test_a_function_never_comes_from_a_file(
 ) -> None:
     """An address that a file chose would be called; a saved run has none."""
     hostile = json.dumps([function])
-    state = sol.run.__getstate__() | {"effects": hostile}
+    state = sol._run.__getstate__() | {"effects": hostile}
     with pytest.raises(ValueError, match=function[0]):
         empty_run().__setstate__(state)
     with pytest.raises(ValueError, match=function[0]):

@@ -154,7 +154,7 @@ def without_collector() -> Iterator[None]:
 def arrays_of(stop: BaseException) -> list[Any]:
     """Return what an exception carries that takes memory."""
     carried: dict[str, Any] = vars(stop)
-    found = [one.run for name, one in carried.items() if name == "solution"]
+    found = [one._run for name, one in carried.items() if name == "solution"]
     found += [one.q for name, one in carried.items() if name == "ensemble"]
     found += [one.growth for name, one in carried.items() if name == "exponents"]
     found += [one.angle for name, one in carried.items() if name == "estimate"]

@@ -18,7 +18,7 @@ RUNS = 500
 
 def test_the_seeds_hold_every_method_events_stops_and_compensated_steps() -> None:
     seeds = whole_solutions()
-    runs = [solution.run for solution in seeds]
+    runs = [solution._run for solution in seeds]
     pairs = {"dopri5-radau5", "dop853-radau5", "taylor-radau5"}
     assert {run.method for run in runs} == {"dopri5", "radau5", *pairs}
     assert {solution.status for solution in seeds} >= {"finished", "event", "max_steps"}

@@ -143,14 +143,14 @@ def test_sampled_states_are_those_of_the_motion():
     ],
 )
 def test_a_damaged_solution_is_refused(damage):
-    state = begun().run.__getstate__() | damage
+    state = begun()._run.__getstate__() | damage
     run = _core.Run.__new__(_core.Run)
     with pytest.raises(ValueError, match=r"do not fit|four numbers|status|splendid"):
         run.__setstate__(state)
 
 
 def test_a_shifted_dense_output_is_refused():
-    state = begun().run.__getstate__()
+    state = begun()._run.__getstate__()
     state["dense_start"] = state["dense_start"] + 1.0
     with pytest.raises(ValueError, match="do not fit together"):
         _core.Run.__new__(_core.Run).__setstate__(state)

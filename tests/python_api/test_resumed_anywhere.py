@@ -128,8 +128,8 @@ def has_function(scene: pc.Scene) -> bool:
 def state(sol: pc.Solution) -> dict[str, Any]:
     """All that a run keeps; if it cannot be pickled, all that can be seen of it."""
     if not has_function(sol.scene):
-        return sol.run.__getstate__()
-    run = sol.run
+        return sol._run.__getstate__()
+    run = sol._run
     seen = {"t": run.t, "states": run.states, "y_reached": run.y_reached, "status": run.status}
     if sol.store == "dense":
         t0, t1 = run.arguments["t_start"], run.t_reached

@@ -92,4 +92,4 @@ def test_a_run_whose_contact_had_no_solution_does_not_go_on() -> None:
     assert stopped.status == "max_steps"
     resumed = stopped.resume(0.0, max_steps=300, on_failure="ignore")
     assert resumed.status == "non_finite"
-    assert resumed.run.t_reached == whole.run.t_reached
+    assert resumed._run.t_reached == whole._run.t_reached

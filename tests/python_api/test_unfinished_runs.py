@@ -48,7 +48,7 @@ def test_a_run_that_does_not_get_to_its_end_warns_of_status_time_and_remedy(stat
     t_end = run["t_span"][1]
     assert sol.status == status
     assert said.startswith(f"the run ended before t_end = {t_end:.6g} s, with status {status}: ")
-    assert f"t = {sol.run.t_reached!r} s" in said
+    assert f"t = {sol._run.t_reached!r} s" in said
     assert sol.message.removeprefix(f"{status}: ") in said
     assert ("resume" in said) == (status in ("max_steps", "time_limit", "max_turns"))
     assert 'on_failure="raise"' in said

@@ -113,7 +113,7 @@ def error_from_defect(
         return None
     t, corrections = correction.t, np.moveaxis(correction.errors, 1, 0)
     if not len(t):
-        t, corrections = np.array([solution.run.t_reached]), correction.errors_at_end
+        t, corrections = np.array([solution._run.t_reached]), correction.errors_at_end
     with np.errstate(all="ignore"):
         corrected = corrections + angles_at(solution, t)
         found = apart(solution, t, lambda at: [*corrected[:, at]])
@@ -125,7 +125,7 @@ def error_from_defect(
             )
         )
     if at_loss:
-        t_start = solution.run.arguments["t_start"]
+        t_start = solution._run.arguments["t_start"]
         is_lost = np.abs(t - t_start) > abs(t_known - t_start)
         angle[is_lost] = position[is_lost] = np.inf
     return error_over(solution, t, angle, position, verified_by)

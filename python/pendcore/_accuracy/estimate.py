@@ -133,10 +133,10 @@ def error_over(
     """Return errors at times as an estimate, up to where the run is lost."""
     lost = np.flatnonzero(~(angle < LOST))
     count = int(lost[0]) + 1 if len(lost) else len(t)
-    end = solution.run.t_reached
+    end = solution._run.t_reached
     last = end if solution.store == "dense" or not len(solution.t) else solution.t[-1]
     return ErrorEstimate(
-        begin=float(solution.run.arguments["t_start"]),
+        begin=float(solution._run.arguments["t_start"]),
         t=t[:count],
         angle=angle[:count],
         position=position[:count],
@@ -191,7 +191,7 @@ def other_steps(solution: Solution, max_step: float) -> float:
     Tighter tolerances suffice where tolerances set the steps, but not where max_step sets them, or
     points at which laws change, nor where a run is over before its steps have grown.
     """
-    stats, run = solution.stats, solution.run
+    stats, run = solution.stats, solution._run
     if stats.limited_by_max_step:
         max_step = min(max_step, OTHER_STEPS * stats.max_step)
     span = float(abs(run.t_reached - run.arguments["t_start"]))
@@ -204,14 +204,14 @@ def second_times(solution: Solution) -> Floats | None:
     """Return the times that a second run is to keep, s; None for dense output."""
     if solution.store in ("dense", "steps"):
         return None
-    return kept_times(solution) if len(solution.t) else np.array([solution.run.t_reached])
+    return kept_times(solution) if len(solution.t) else np.array([solution._run.t_reached])
 
 
 def _compared(
     solution: Solution, method: str, until: float, report: Report | None
 ) -> ErrorEstimate:
     """Return the error of a solution, compared with second runs by a method."""
-    asked, first = solution.run.arguments, _choice_of(solution)
+    asked, first = solution._run.arguments, _choice_of(solution)
     tight = float(np.min(first.rtol)) < THIRD_RUN_BELOW or asked["step"] is not None
     tight |= other_steps(solution, inf) < inf
     start = start_of(solution)
@@ -230,7 +230,7 @@ def _compared(
                     break
             assert second is not None
             seconds.append(second)
-            start = start._replace(t_end=second.run.t_reached)
+            start = start._replace(t_end=second._run.t_reached)
             if not second.success or monotonic() > until:
                 break
     except BaseException as stop:
@@ -246,7 +246,7 @@ def _legs(
     solution: Solution, start: Start, choice: Choice, until: float, report: Report
 ) -> Iterator[Solution]:
     """Yield a second run after each of its legs."""
-    asked = solution.run.arguments
+    asked = solution._run.arguments
     max_steps = MORE_STEPS * asked["max_steps"]
     max_step = other_steps(solution, asked["max_step"])
     count = int(np.clip(solution.stats.accepted / STEPS_A_LEG, 1, LEGS))
@@ -280,7 +280,7 @@ def _part_of(report: Report | None, done: int, count: int) -> Report:
 
 def _choice_of(solution: Solution) -> Choice:
     """Return the method and tolerances of a solution; a fixed step counts as a tight tolerance."""
-    asked = solution.run.arguments
+    asked = solution._run.arguments
     if asked["step"] is not None:
         return Choice(solution.method, FOR_FIXED_STEPS, FOR_FIXED_STEPS)
     return Choice(solution.method, asked["rtol"], asked["atol"])
@@ -292,13 +292,13 @@ def _common_times(solution: Solution, seconds: Sequence[Solution]) -> Floats:
         return times_within_steps([solution, *seconds])
     times = kept_times(solution)
     if not len(times):
-        times = np.array([solution.run.t_reached])
+        times = np.array([solution._run.t_reached])
     return times[np.all([reached(second, times) for second in seconds], axis=0)]
 
 
 def _is_lost(solution: Solution, second: Solution) -> bool:
     """Return whether two runs have nothing to do with each other where the second one ended."""
-    last = np.array([second.run.t_reached])
+    last = np.array([second._run.t_reached])
     if solution.store != "dense":
         last = kept_times(solution)
         last = last[reached(second, last)][-1:]

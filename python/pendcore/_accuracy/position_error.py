@@ -53,15 +53,15 @@ def times_within_steps(runs: Iterable[Solution]) -> Floats:
     They go from the start of the runs to the end that comes first.
     """
     solutions = [*runs]
-    begin = solutions[0].run.arguments["t_start"]
-    ends = [one.run.t_reached for one in solutions]
+    begin = solutions[0]._run.arguments["t_start"]
+    ends = [one._run.t_reached for one in solutions]
     direction = -1.0 if min(ends) < begin else 1.0
     end = direction * min(direction * one for one in ends)
-    nodes = np.unique(np.concatenate([direction * one.run.step_starts for one in solutions]))
+    nodes = np.unique(np.concatenate([direction * one._run.step_starts for one in solutions]))
     nodes = np.append(nodes[nodes < direction * end], direction * end)
     if len(nodes) == 1:
         return np.array([end])
-    own = np.searchsorted(direction * solutions[0].run.step_starts, nodes[:-1], side="right")
+    own = np.searchsorted(direction * solutions[0]._run.step_starts, nodes[:-1], side="right")
     few = np.bincount(own)[own] <= CUTS
     shares = np.arange(1, SAMPLES) / SAMPLES
     inside = nodes[:-1][few, np.newaxis] + np.diff(nodes)[few, np.newaxis] * shares
@@ -80,7 +80,7 @@ def states_at(solution: Solution, t: Floats) -> Floats:
     """
     if solution.store == "dense":
         return solution(t).T
-    run, kept = solution.run, np.hstack([solution.q, solution.qd])
+    run, kept = solution._run, np.hstack([solution.q, solution.qd])
     if len(solution.t) == len(t) and (solution.t == t).all():
         return kept
     if len(t) == 1 and t[0] == run.t_reached:
@@ -119,6 +119,6 @@ def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
 
 def reached(solution: Solution, t: Floats) -> npt.NDArray[np.bool_]:
     """Return at which of the times (n_t,), s, a run was."""
-    start, end = solution.run.arguments["t_start"], solution.run.t_reached
+    start, end = solution._run.arguments["t_start"], solution._run.t_reached
     there: npt.NDArray[np.bool_] = (min(start, end) <= t) & (t <= max(start, end))
     return there

@@ -171,7 +171,7 @@ def _not_finished(runs: Trials, latest: TrialRun) -> Solution:
     if status == "time_limit" or is_end:
         return _ended_early(runs, latest)
     why = f"{latest.text}: {latest.solution.message}"
-    if latest.solution.run.arguments["max_steps"] < runs.options["max_steps"]:
+    if latest.solution._run.arguments["max_steps"] < runs.options["max_steps"]:
         why = f"{latest.text} takes more than {MOST_STEPS} times the steps of the first trial"
     raise _refusal(runs, why)
 
@@ -180,10 +180,10 @@ def _first_trial(runs: Trials, scale: float) -> TrialRun:
     """Run at a tolerance that is not too loose to follow the motion to its end."""
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
-        before = trial.solution.run.t_reached
+        before = trial.solution._run.t_reached
         runs.drop(trial)
         trial = runs.trial(trial.scale / FARTHER, trial.method)
-        if abs(trial.solution.run.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
+        if abs(trial.solution._run.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
             break  # both say that the motion ends there
     return trial
 
@@ -237,7 +237,7 @@ def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate
     farther = trial.scale / FARTHER
     if not until or trial.scale >= NOTHING_IN_COMMON:
         return farther
-    whole = trial.solution.run.t_reached - begin
+    whole = trial.solution._run.t_reached - begin
     grown: float = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
     return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
@@ -328,13 +328,13 @@ def _in_the_way(runs: Trials, trial: TrialRun, error: ErrorEstimate | None) -> s
         question = ": is a law of your own not smooth?" if is_own else ""
         return f"the error does not follow the tolerances{question}"
     solution = trial.solution
-    begin, end, n = error.begin, solution.run.t_reached, len(solution.scene.links)
+    begin, end, n = error.begin, solution._run.t_reached, len(solution.scene.links)
     last_bit = np.spacing(max(abs(begin), abs(end)))
-    rates = np.vstack([solution.qd, solution.run.y_reached[n : 2 * n]])
+    rates = np.vstack([solution.qd, solution._run.y_reached[n : 2 * n]])
     turned = last_bit / 2 * np.abs(rates).max()
     if abs(begin) > abs(end - begin) and turned > LATE * error.largest:
         return f"times from {begin:g} s on are rounded to {last_bit:.0e} s; begin nearer to 0"
-    angle = np.abs(solution.run.arguments["q0"]).max()
+    angle = np.abs(solution._run.arguments["q0"]).max()
     if angle > LARGE_ANGLE and not error.is_lost and error.largest < HOPELESS * angle:
         bit = np.spacing(angle)
         return f"angles of {angle:.0e} rad are rounded to {bit:.0e} rad; begin with fewer turns"

@@ -186,7 +186,7 @@ class Trials:
             "max_steps": self._most_steps(MORE_STEPS),
         }
         # each trial has its own terminal event
-        ends = [each.solution.run.t_reached for each in self.trials]
+        ends = [each.solution._run.t_reached for each in self.trials]
         start = self.start._replace(t_end=max(ends, key=lambda t: abs(t - self.start.t_start)))
         second = self._run(moved(start, len(self.seconds)), method, rtol, options)
         self.seconds.append(second)
@@ -268,7 +268,7 @@ class Trials:
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
         """Continue a second run to the end of a trial: a terminal event may come a bit later."""
-        end, begin, run = trial.solution.run.t_reached, self.start.t_start, second.solution.run
+        end, begin, run = trial.solution._run.t_reached, self.start.t_start, second.solution._run
         is_behind = abs(end - begin) > abs(run.t_reached - begin)
         if not (is_behind and second.solution.store == "dense" and second.solution.success):
             return second

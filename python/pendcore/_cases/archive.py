@@ -59,7 +59,7 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
             entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
     report = callback(progress, f"writing {os.fspath(path)}")
     try:
-        state = {_RUN + key: value for key, value in solution.run.__getstate__().items()}
+        state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
         with whole_file(path) as name, name.open("wb") as file:
             _write(file, entries | state, report)
     finally:

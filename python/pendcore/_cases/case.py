@@ -114,7 +114,7 @@ class Case:
         >>> pc.Case.of_solution(case.simulate()).q0 == case.q0
         True
         """
-        asked = {key: _plain(value) for key, value in solution.run.arguments.items()}
+        asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
         start = {key: asked.pop(key) for key in ("q0", "qd0")}
         t_span = (asked.pop("t_start"), asked.pop("t_end"))
         asked["events"] = tuple(solution.events_asked_for())

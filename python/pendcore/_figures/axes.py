@@ -106,7 +106,7 @@ def horizon_time(solution: Solution, horizon: float | None) -> float | None:
 
 def shade_past(axes: Iterable[Axes], valid: float | None, solution: Solution) -> list[Artist]:
     """Shade what lies past a time, s, in each of the axes."""
-    end = solution.run.t_reached
+    end = solution._run.t_reached
     if valid is None or valid == end:
         return []
     return [axis.axvspan(valid, end, **PAST) for axis in axes]

@@ -130,7 +130,7 @@ def draw_energies(solution: Solution, axis: Axes) -> list[Line2D]:
 
 def _energy(solution: Solution) -> tuple[Floats, Energy]:
     t, states, ledger = curve_of(solution)
-    return t, energy_over(solution.scene, solution.run.arguments, t, states, ledger)
+    return t, energy_over(solution.scene, solution._run.arguments, t, states, ledger)
 
 
 def _energies(t: Floats, energy: Energy) -> Panel:

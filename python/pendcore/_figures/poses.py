@@ -39,7 +39,7 @@ def draw_strip(
     t, states, _ = curve_of(solution)
     at = _times(times, np.linspace(t[0], t[-1], _POSES))
     n = len(solution.scene.links)
-    poses = solution.scene._compiled.positions(at, solution.run.evaluate(at)[:, :n])
+    poses = solution.scene._compiled.positions(at, solution._run.evaluate(at)[:, :n])
     path = solution.scene._compiled.positions(t, states[:, :n])[:, -1]
     reach = float(sum(link.length for link in solution.scene.links))
     pivot = poses[:, 0, 0]
@@ -74,7 +74,7 @@ def draw_free_bodies(
     at = _times(t, np.array(span_of(solution)[:1]))
     if len(at) > 1:
         raise ValueError(f"t: {len(at)} times: must be one (s): free bodies are of an instant")
-    state = with_dense_output(solution).run.evaluate(at)
+    state = with_dense_output(solution)._run.evaluate(at)
     scene, n = solution.scene, len(solution.scene.links)
     q, qd = state[:, :n], state[:, n:]
     pose = scene._compiled.positions(at, q)[0]

@@ -250,11 +250,11 @@ def lyapunov_of(
     progress: Progress,
 ) -> LyapunovExponents:
     """Compute the exponents of a solution's motion to its end, at its tolerances."""
-    asked = solution.run.arguments
-    if solution.run.t_reached == asked["t_start"]:
+    asked = solution._run.arguments
+    if solution._run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
-        solution.scene, (asked["t_start"], solution.run.t_reached), asked["q0"], asked["qd0"],
+        solution.scene, (asked["t_start"], solution._run.t_reached), asked["q0"], asked["qd0"],
         count=count, transient=transient, rtol=float(np.min(asked["rtol"])),
         atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
         progress=progress,

@@ -88,14 +88,14 @@ def resumed(
 ) -> Solution:
     """Go on with a run; see `pendcore.Solution.resume`."""
     report = callback(progress)
-    run = result.run.resume(t_end, t_eval, max_steps, time_limit, report)
+    run = result._run.resume(t_end, t_eval, max_steps, time_limit, report)
     return completed(type(result)(result.scene, run, result.name), report)
 
 
 def completed(result: Solution, report: Callable[[float], object] | None) -> Solution:
     """End the bar of a run; if an exception broke it off, raise that with the run so far."""
     close(report)
-    error = result.run.take_error()
+    error = result._run.take_error()
     if error is not None:
         error.solution = result  # type: ignore[attr-defined]
         try:
@@ -107,8 +107,8 @@ def completed(result: Solution, report: Callable[[float], object] | None) -> Sol
 
 def start_of(solution: Solution) -> Start:
     """Return what a solution ran, as far as it came."""
-    asked = solution.run.arguments
-    end = solution.run.t_reached
+    asked = solution._run.arguments
+    end = solution._run.t_reached
     return Start(solution.scene, asked["q0"], asked["qd0"], asked["t_start"], end)
 
 

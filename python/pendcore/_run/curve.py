@@ -47,10 +47,10 @@ def curve_of(
     more times of the dense output; where a run has none, it is simulated anew. ``last_steps`` is
     the number of steps that are of interest.
     """
-    kept = solution.run
+    kept = solution._run
     if _is_smooth(solution, turn):
         return Curve(kept.t, kept.states, kept.ledger)
-    run, (first, last) = with_dense_output(solution).run, span_of(solution)
+    run, (first, last) = with_dense_output(solution)._run, span_of(solution)
     inside = run.step_starts[(run.step_starts - first) * (last - run.step_starts) > 0]
     nodes = np.array([first] if first == last else [first, *inside, last])
     nodes = nodes if last_steps is None else nodes[-last_steps - 1 :]
@@ -60,7 +60,7 @@ def curve_of(
 
 def span_of(solution: Solution) -> tuple[float, float]:
     """Return the first and the last time that a run kept, s; all of the run if it kept but one."""
-    run = solution.run
+    run = solution._run
     if len(run.t) > 1:
         return float(run.t[0]), float(run.t[-1])
     return float(run.arguments["t_start"]), run.t_reached
@@ -72,11 +72,11 @@ def _is_smooth(solution: Solution, turn: float) -> bool:
     if solution.store == "dense" or not len(t) or (t[0], t[-1]) != (first, last):
         return False
     # Times that are farther apart than steps may be those at which a swing turns, say.
-    step = abs(solution.run.t_reached - solution.run.arguments["t_start"]) / max(
+    step = abs(solution._run.t_reached - solution._run.arguments["t_start"]) / max(
         solution.stats.accepted, 1
     )
     is_close = solution.store == "steps" or np.abs(np.diff(t)).max(initial=0.0) <= step
-    return is_close and bool((_turns(solution.scene, t, solution.run.states) <= turn).all())
+    return is_close and bool((_turns(solution.scene, t, solution._run.states) <= turn).all())
 
 
 def _turns(scene: Scene, t: Floats, states: Floats) -> Floats:

@@ -43,14 +43,14 @@ def with_dense_output(solution: Solution) -> Solution:
 
 def _bytes_of(solution: Solution) -> int:
     """Return the size of the dense output that a run would have had."""
-    dimension = 2 * len(solution.scene.links) + len(solution.run.ledger)
-    return 8 * solution.stats.accepted * (solution.run.dense_degree + 1) * dimension
+    dimension = 2 * len(solution.scene.links) + len(solution._run.ledger)
+    return 8 * solution.stats.accepted * (solution._run.dense_degree + 1) * dimension
 
 
 def _simulated_anew(solution: Solution) -> Solution:
     """Return the run as far as it came, whatever ended it."""
-    asked = solution.run.arguments
-    if solution.run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
+    asked = solution._run.arguments
+    if solution._run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
         asked |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
     q0, qd0, t_start, t_end = (asked.pop(name) for name in _START)
     whole = _attempts(solution)
@@ -62,7 +62,7 @@ def _simulated_anew(solution: Solution) -> Solution:
     run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, silent)
     again = completed(Solution(scene, run, solution.name), report)
     # A run that was resumed has passed events that end a run.
-    while again.status == "event" and again.run.t_reached != solution.run.t_reached:
+    while again.status == "event" and again._run.t_reached != solution._run.t_reached:
         most = max(whole + solution.success - _attempts(again), 1)
         again = resumed(again, t_end, max_steps=most, progress=None)
     return again
@@ -74,7 +74,7 @@ def _attempts(solution: Solution) -> int:
 
 def _is_the_same(again: Solution, solution: Solution) -> bool:
     """Whether every bit that a run kept is there again."""
-    one, other = again.run, solution.run
+    one, other = again._run, solution._run
     same = one.t_reached == other.t_reached and _bits(one.y_reached) == _bits(other.y_reached)
     if solution.store == "end" or not len(other.t):
         return same
@@ -88,7 +88,7 @@ def _bits(numbers: Floats) -> bytes:
 def _refusal(solution: Solution, reason: str) -> ValueError:
     """Return what the core says where it is asked for dense output, with a reason."""
     try:
-        solution.run.evaluate(solution.run.t[:0])
+        solution._run.evaluate(solution._run.t[:0])
     except ValueError as refused:
         return ValueError(f"{refused}; {reason}")
     raise AssertionError("a run without dense output evaluates")

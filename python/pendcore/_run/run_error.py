@@ -72,7 +72,7 @@ def _complaint(solution: Solution) -> str:
     """Say why a run ended and what continues it; some messages say the latter themselves."""
     if solution.success:
         return why_unverified(solution)
-    t_end, message = solution.run.arguments["t_end"], solution.message
+    t_end, message = solution._run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "
         f"{message.removeprefix(f'{solution.status}: ')}"

@@ -65,7 +65,7 @@ class Solution:
     'q_2 = 0.704933 rad at 2.5 s'
     """
 
-    __slots__ = ("_events", "_name", "accuracy", "known_error", "run", "scene")
+    __slots__ = ("_events", "_name", "_run", "accuracy", "known_error", "scene")
 
     def __init__(
         self,
@@ -75,7 +75,8 @@ class Solution:
         accuracy: Accuracy | None = None,
         error: ErrorEstimate | None = None,
     ) -> None:
-        self.scene, self.run, self.name = scene, run, name
+        self.scene, self._run = scene, run
+        self._name = name and text("name", name)
         self.accuracy, self.known_error = accuracy, error
         self._events: list[FoundEvents] | None = None
 
@@ -86,27 +87,27 @@ class Solution:
 
     @name.setter
     def name(self, name: str) -> None:
-        self._name = name if name == "" else text("name", name)  # 3 % of a run of one step
+        self._name = text("name", name)
 
     @property
     def t(self) -> Floats:
         """Times of the accepted steps, or ``t_eval``, s, (n_t,)."""
-        return self.run.t
+        return self._run.t
 
     @property
     def q(self) -> Floats:
         """Absolute angles, rad, (n_t, n)."""
-        return self.run.states[:, : len(self.scene.links)]
+        return self._run.states[:, : len(self.scene.links)]
 
     @property
     def qd(self) -> Floats:
         """Angular rates, rad/s, (n_t, n)."""
-        return self.run.states[:, len(self.scene.links) :]
+        return self._run.states[:, len(self.scene.links) :]
 
     @property
     def y(self) -> Floats:
         """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
-        return self.run.states.T
+        return self._run.states.T
 
     @property
     def t_reached(self) -> float:
@@ -114,7 +115,7 @@ class Solution:
 
         With ``t_eval`` it may lie beyond all of ``t``.
         """
-        return self.run.t_reached
+        return self._run.t_reached
 
     @property
     def y_reached(self) -> Floats:
@@ -127,7 +128,7 @@ class Solution:
         >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
         (0, '0.5 s', (4,))
         """
-        return self.run.y_reached
+        return self._run.y_reached
 
     def __call__(self, t: npt.ArrayLike) -> Floats:
         """State at any time within the run, from the method's own interpolant.
@@ -158,38 +159,38 @@ class Solution:
         times = finite_array("t", t, "s")
         if times.ndim > 1:
             raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
-        states = self.run.evaluate(times.reshape(-1)).T
+        states = self._run.evaluate(times.reshape(-1)).T
         return states[:, 0] if times.ndim == 0 else states
 
     @property
     def status(self) -> str:
         """How the run ended, in a word: ``"finished"``, ``"max_steps"``, ``"non_finite"``, ..."""
-        return self.run.status
+        return self._run.status
 
     @property
     def message(self) -> str:
         """How the run ended, in a sentence, with advice where there is some."""
-        return self.run.message
+        return self._run.message
 
     @property
     def success(self) -> bool:
         """Whether the run reached its end, or an event ended it as asked."""
-        return self.run.success
+        return self._run.success
 
     @property
     def method(self) -> str:
         """Name of the method."""
-        return self.run.method
+        return self._run.method
 
     @property
     def store(self) -> str:
         """What was kept: ``"dense"``, ``"steps"``, ``"times"`` or ``"end"``."""
-        return self.run.store
+        return self._run.store
 
     @property
     def stats(self) -> Statistics:
         """What the run took: right-hand sides, steps, and what limited them."""
-        return Statistics(**self.run.statistics)
+        return Statistics(**self._run.statistics)
 
     @property
     def events(self) -> list[FoundEvents]:
@@ -200,7 +201,7 @@ class Solution:
         """
         if self._events is None:
             self._events = found_events(
-                len(self.events_asked_for()), len(self.scene.links), self.run.found
+                len(self.events_asked_for()), len(self.scene.links), self._run.found
             )
         return self._events
 
@@ -216,7 +217,7 @@ class Solution:
         >>> sol.events_asked_for() == [bottom]
         True
         """
-        return [event_of(kind, values) for kind, values in self.run.arguments["events"]]
+        return [event_of(kind, values) for kind, values in self._run.arguments["events"]]
 
     def relative_angles(self) -> Floats:
         """Angles of the joints, phi_i = q_i - q_{i-1} with q_0 = 0, rad, (n_t, n).
@@ -288,7 +289,7 @@ class Solution:
         >>> f"{energy.total[0]:.4f} J at first, {energy.total[-1]:.4f} J at last"
         '-14.6484 J at first, -14.6484 J at last'
         """
-        run = self.run
+        run = self._run
         return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
 
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
@@ -305,7 +306,7 @@ class Solution:
         >>> f"{first.force:.2f} N at joint {first.joint}, t = {first.t:.3f} s"
         '31.93 N at joint 1, t = 0.644 s'
         """
-        return largest_reactions(self.scene, self.run, progress)
+        return largest_reactions(self.scene, self._run, progress)
 
     def defect(self, *, progress: Progress = None) -> Defect:
         """Return the spurious torques, N m: what motors would have to add to make the curve exact.
@@ -323,7 +324,7 @@ class Solution:
         """
         from pendcore._accuracy.defect import defect
 
-        return defect(self.scene, self.run, progress)
+        return defect(self.scene, self._run, progress)
 
     def estimate_error(
         self, *, time_limit: float | None = None, progress: Progress = None
@@ -526,12 +527,12 @@ class Solution:
     def __reduce__(self) -> tuple[object, ...]:
         # The scene comes first: if it cannot be pickled, its message says so best.
         verified = None if self.accuracy is None else self.known_error
-        return type(self), (self.scene, self.run, self.name, self.accuracy, verified)
+        return type(self), (self.scene, self._run, self.name, self.accuracy, verified)
 
     def __deepcopy__(self, memo: object) -> Solution:
         # None of these objects ever changes, so the copy shares them.
         verified = None if self.accuracy is None else self.known_error
-        return Solution(self.scene, self.run, self.name, self.accuracy, verified)
+        return Solution(self.scene, self._run, self.name, self.accuracy, verified)
 
     def __repr__(self) -> str:
         from pendcore._views.table import text

@@ -52,13 +52,13 @@ class EnergyDrift(NamedTuple):
 
 def has_every_step(solution: Solution) -> bool:
     """Whether the kept times are those of the steps, and not those asked for."""
-    asked_for = solution.run.arguments["t_eval"] is not None
+    asked_for = solution._run.arguments["t_eval"] is not None
     return solution.store in ("dense", "steps") and not asked_for
 
 
 def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     """Compute the drift from the states that were kept, or from one state in so many."""
-    run, asked = solution.run, solution.run.arguments
+    run, asked = solution._run, solution._run.arguments
     start = np.concatenate([asked["q0"], asked["qd0"]])
     states = np.vstack([start, run.states[::every], run.y_reached])
     times = np.concatenate([[asked["t_start"]], run.t[::every], [run.t_reached]])
@@ -92,7 +92,7 @@ def _kinds_that_do_work(scene: Scene) -> list[str]:
 
 def _residual(solution: Solution) -> float | None:
     """Return the largest residual of the ledger, J."""
-    if not solution.run.arguments["ledger"]:
+    if not solution._run.arguments["ledger"]:
         return None
     ledger = solution.energy().ledger
     return None if ledger is None else float(np.abs(ledger.residual).max(initial=0.0))

@@ -29,7 +29,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
 
     ``refusal`` is what an `AccuracyError` said, if the run comes from one.
     """
-    case, run = Case.of_solution(solution), solution.run
+    case, run = Case.of_solution(solution), solution._run
     n = len(case.scene.links)
     drift = energy_drift.energy_drift(solution)
     found = {
@@ -43,7 +43,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "events": _events(solution),
         "status": solution.status,
         "message": solution.message,
-        "last_method": solution.run.last_method,
+        "last_method": solution._run.last_method,
         "success": solution.success,
         "refusal": refusal or None,
         "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
@@ -100,7 +100,7 @@ def _ledger(solution: Solution) -> dict[str, float] | None:
 
 
 def _run_options(solution: Solution) -> dict[str, Any]:
-    asked = solution.run.arguments
+    asked = solution._run.arguments
     always = {key: asked[key] for key in ("method", "rtol", "atol")}
     options = always | dict(Case.of_solution(solution).options)
     options.pop("events", None)

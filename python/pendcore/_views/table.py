@@ -41,10 +41,10 @@ def html(solution: Solution) -> str:
     if dense is None:
         count = len(solution.t)
         k = np.unique(np.linspace(0, count - 1, min(count, _POSES)).round().astype(np.intp))
-        poses = _places(solution, solution.t[k], solution.run.states[k])
+        poses = _places(solution, solution.t[k], solution._run.states[k])
     else:
         t = np.linspace(*span_of(solution), _POSES)
-        poses = _places(solution, t, dense.run.evaluate(t))
+        poses = _places(solution, t, dense._run.evaluate(t))
     if not len(poses):
         return rows
     many = f"{len(poses)} times, the last of them plainest"
@@ -125,7 +125,7 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
 
 
 def _evaluations(solution: Solution) -> str:
-    return evaluations(solution.method, solution.run.last_method, solution.stats.nfev)
+    return evaluations(solution.method, solution._run.last_method, solution.stats.nfev)
 
 
 def _effects(solution: Solution) -> str:

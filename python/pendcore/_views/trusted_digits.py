@@ -21,7 +21,7 @@ def trusted_digits(solution: Solution, drift: EnergyDrift, most: int = MOST) -> 
 
     It does not hold past the time to which a chaotic run is right: see `Solution.estimate_error`.
     """
-    asked, accuracy = solution.run.arguments, solution.accuracy
+    asked, accuracy = solution._run.arguments, solution.accuracy
     shares = [drift.relative_drift or 0.0]
     if "step" not in Case.of_solution(solution).options:  # else tolerances set no step
         shares.append(AMPLIFIED * float(np.max(asked["rtol"])))

@@ -41,7 +41,7 @@ def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Hor
         return Horizon(until, f"until t = {until:.6g} s, and lost after that")
     if not estimate.is_complete:
         return Horizon(until, f"at least until t = {until:.6g} s", may_be_later=True)
-    if until == solution.run.t_reached:
+    if until == solution._run.t_reached:
         return Horizon(until, f"until its end, t = {until:.6g} s")
     return Horizon(until, f"until t = {until:.6g} s, the last time that was kept")
 

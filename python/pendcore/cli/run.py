@@ -183,7 +183,7 @@ def _write(
     """Write small files first, the figure last; return the facts, if there was time for them."""
     found: dict[str, Any] = {}
     until = None if horizon is None else horizon.valid_until
-    if (steps := len(solution.run.step_starts)) > _MANY_STEPS:
+    if (steps := len(solution._run.step_starts)) > _MANY_STEPS:
         print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
     with files.needed_for("summary.txt", "summary.json"):
         found = facts(solution, refusal)

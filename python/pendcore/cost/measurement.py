@@ -97,7 +97,7 @@ class Measurement:
             time_limit=max(PILOT_SHARE * self.time_limit, 1e-3), **self.limits,
         )  # fmt: skip
         if pilot.status == "time_limit":
-            self._cut(pilot.run.t_reached, self._too_little())
+            self._cut(pilot._run.t_reached, self._too_little())
         stiff = pilot.stats.stiff
         self._find_reference(stiff)
         self.report(0.2)

@@ -92,7 +92,7 @@ def reference(
         whole = [made for made in runs if made.success]
         if len(whole) == 2:
             return _compared(whole, times)
-    farthest = sorted(runs, key=lambda made: abs(made.run.t_reached - start.t_end))[:2]
+    farthest = sorted(runs, key=lambda made: abs(made._run.t_reached - start.t_end))[:2]
     count = min(len(made.t) for made in farthest)
     if count < 2:
         second = farthest[-1]
@@ -100,7 +100,7 @@ def reference(
         raise TooFarError(
             f"no reference: within {time_limit:.3g} s no two methods got beyond the first of the "
             f"{points} times ({second.method}: {second.message}){remedy}",
-            second.run.t_reached,
+            second._run.t_reached,
         )
     return _compared(farthest, times[:count])
 
@@ -127,5 +127,5 @@ def _compared(runs: list[Solution], times: Floats) -> Reference:
 
 
 def _text(solution: Solution) -> str:
-    asked = solution.run.arguments
+    asked = solution._run.arguments
     return f"{solution.method} at rtol {float(asked['rtol']):.0e}, compensated"

@@ -52,8 +52,8 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
     """Return the times of the frames, s: those of the longest run, at `speed` times true time."""
     rate = positive("fps", fps, "1/s")
     faster = positive("speed", speed, "")
-    starts = [float(one.run.arguments["t_start"]) for one in solutions]
-    ends = [one.run.t_reached for one in solutions]
+    starts = [float(one._run.arguments["t_start"]) for one in solutions]
+    ends = [one._run.t_reached for one in solutions]
     lengths = [end - start for start, end in zip(starts, ends, strict=True)]
     longest = int(np.argmax(np.abs(lengths)))
     start, length = starts[longest], lengths[longest]
@@ -71,9 +71,9 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
 def moves_of(solution: Solution, times: Floats) -> Moves:
     """Return where a run is at the times of frames; it stays where it ends."""
     solution = with_dense_output(solution)
-    start, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
+    start, end = float(solution._run.arguments["t_start"]), solution._run.t_reached
     at = np.clip(times, min(start, end), max(start, end))
-    states = solution.run.evaluate(at)
+    states = solution._run.evaluate(at)
     n = len(solution.scene.links)
     parts = _parts(at, states[:, n:])
     places = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
@@ -83,7 +83,7 @@ def moves_of(solution: Solution, times: Floats) -> Moves:
         states,
         compiled.positions(at, states[:, :n]),
         compiled.reactions(at, states[:, :n], states[:, n:]),
-        compiled.positions(along, solution.run.evaluate(along)[:, :n])[:, -1],
+        compiled.positions(along, solution._run.evaluate(along)[:, :n])[:, -1],
         parts,
         float(sum(link.length for link in solution.scene.links)),
     )

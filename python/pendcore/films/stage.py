@@ -190,7 +190,7 @@ def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> in
     if choices.horizon is not None:
         positive("horizon", choices.horizon, "rad")
     valid = horizon_time(solution, choices.horizon)
-    if valid is None or valid == solution.run.t_reached:
+    if valid is None or valid == solution._run.t_reached:
         return len(times)
     past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0
     return int(np.argmax(past)) - 1 if past.any() else len(times)
@@ -199,4 +199,4 @@ def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> in
 def _energy_strip(axis: Axes, solution: Solution) -> Line2D:
     """Draw the energies over time, and return the line that moves along."""
     draw_energies(solution, axis)
-    return axis.axvline(float(solution.run.arguments["t_start"]), color="0.2", linewidth=1.0)
+    return axis.axvline(float(solution._run.arguments["t_start"]), color="0.2", linewidth=1.0)

@@ -63,12 +63,12 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     case = Case.of_solution(solution)
     scene = solution.scene
     own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
-    has_events = bool(solution.run.arguments["events"])
+    has_events = bool(solution._run.arguments["events"])
     core = None if own else core_for_browsers()
     told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
     data = {
         "case": _plain_case(case, solution),
-        "hash": "" if has_events else solution.run.fingerprint,
+        "hash": "" if has_events else solution._run.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
         "can_run": core is not None,
@@ -125,7 +125,7 @@ def _bundle(names: tuple[str, ...]) -> str:
 
 def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
-    start = solution.run.arguments
+    start = solution._run.arguments
     # The page knows no events: its run ends where one ended this run, before some times to keep.
     ended = solution.status == "event"
     left_out = {*LEFT_OUT, "t_eval", "store"} if ended else LEFT_OUT
@@ -146,7 +146,7 @@ def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
         "run": {
             **options,
             "t_start": start["t_start"],
-            "t_end": solution.run.t_reached if ended else start["t_end"],
+            "t_end": solution._run.t_reached if ended else start["t_end"],
             "method": _method(solution),
             "rtol": start["rtol"],
         },
@@ -155,7 +155,7 @@ def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
 
 def _method(solution: Solution) -> str:
     """Return the method of a run, or "auto" where that takes the same: it goes on to do so."""
-    asked = solution.run.arguments
+    asked = solution._run.arguments
     of_no_length = start_of(solution)._replace(t_end=asked["t_start"])
     try:
         usual = run(of_no_length, Choice("auto", asked["rtol"], asked["atol"]), store="end").method
@@ -213,9 +213,9 @@ def _parameters(value: Any) -> dict[str, Any]:
 def _recording(solution: Solution) -> dict[str, Any]:
     """Return the run at equal steps of time, for a page that only plays back."""
     solution = with_dense_output(solution)
-    begin, end = float(solution.run.arguments["t_start"]), solution.run.t_reached
+    begin, end = float(solution._run.arguments["t_start"]), solution._run.t_reached
     n = len(solution.scene.links)
-    rates = solution.run.evaluate(solution.run.step_starts)[:, n:]
+    rates = solution._run.evaluate(solution._run.step_starts)[:, n:]
     fastest = float(np.abs(rates[np.isfinite(rates)]).max(initial=0.0))
     frames = abs(end - begin) * max(_FRAME_RATE, fastest / _FRAME_TURN)
     t = np.linspace(begin, end, round(min(max(frames, 2), _MOST_FRAMES)))

@@ -44,7 +44,7 @@ def empty_axes(solution: Solution) -> Figure:
     figure, axes = sheets(len(solution.scene.links))
     span = solution.t[0], solution.t[-1]
     if span[0] == span[1]:  # a run that failed at once: the span that was asked for
-        span = solution.run.arguments["t_start"], solution.run.arguments["t_end"]
+        span = solution._run.arguments["t_start"], solution._run.arguments["t_end"]
     for i, axis in enumerate(axes, start=1):
         axis.set(xlim=span, ylabel=f"q{i} (deg)")
         low, high, step = whole_ticks(np.degrees(solution.q[:, i - 1]))

@@ -58,7 +58,7 @@ def solved_or_refused(case: Case) -> tuple[Solution, str]:
     if any(effect.description.account != "none" for effect in case.scene.effects):
         options["ledger"] = True
     found = _at_times_until(end, case, options)
-    reached = float(found[0].run.t_reached)
+    reached = float(found[0]._run.t_reached)
     return found if reached == end else _at_times_until(reached, case, options)
 
 
@@ -107,7 +107,7 @@ def numerical_solution(
 
 
 def _how(solution: Solution) -> str:
-    asked, stats = solution.run.arguments, solution.stats
+    asked, stats = solution._run.arguments, solution.stats
     step = asked.get("step")
     tolerance = (
         f"with a fixed step of ${quantity(step, 's')}$"
