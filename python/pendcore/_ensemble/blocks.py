@@ -60,10 +60,11 @@ class Blocks:
 
 def require_few_blocks(blocks: Blocks) -> None:
     """Raise a ValueError unless a folder can hold the files of all blocks."""
-    if len(blocks) > MOST_BLOCKS:
+    count = prod(blocks.grid)  # a damaged store may say more than len() can hold
+    if count > MOST_BLOCKS:
         raise ValueError(
-            f"block_shape = {list(blocks.block_shape)}: makes {len(blocks):,} blocks: must make at "
-            f"most {MOST_BLOCKS:,}: give a larger chunk"
+            f"block_shape = {list(blocks.block_shape)}: makes {count:,} blocks: must make at most "
+            f"{MOST_BLOCKS:,}: give a larger chunk"
         )
 
 
