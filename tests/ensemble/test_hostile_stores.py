@@ -235,7 +235,7 @@ def test_the_name_of_a_reducer_does_not_lead_out_of_a_store(tmp_path, reduced, n
 
 
 @pytest.mark.parametrize(
-    ("shape", "count"), [([10**6, 10**6], "1,000,000,000,000"), ([2, 10**20], "2,0.*,000")]
+    ("shape", "count"), [([10**6, 10**6], "1,000,000,000,000"), ([2, 10**20], "200,[0,]*")]
 )
 def test_more_blocks_than_a_folder_holds_are_refused(shape, count, tmp_path, stored):
     path = tmp_path / "a.zarr"

@@ -260,7 +260,7 @@ def test_what_knows_its_own_functions_is_collected(made: str) -> None:
 def test_functions_live_as_long_as_the_core_can_call_them(made: str) -> None:
     """Python's own scene and solution may be gone."""
     rig = Rig(MADE[made])
-    run = getattr(rig.made, "run", None)
+    run = getattr(rig.made, "_run", None)
     scene = rig.made._compiled if run is None else None
     del rig
     gc.collect()
