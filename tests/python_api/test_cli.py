@@ -119,7 +119,7 @@ def test_ctrl_c_outside_the_run_is_told_in_a_line(monkeypatch, capsys):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pendcore._api.solve.solve", stop)
+    monkeypatch.setattr("pendcore._api.simulate.simulate", stop)
     assert main(["run"]) == 1
     assert capsys.readouterr() == ("", "pendcore run: interrupted\n")
     assert written(".") == []

@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Unpack
+from typing import Any, Unpack
 
+import numpy as np
 import numpy.typing as npt
 
-from pendcore._api.solve import solve
+from pendcore import _core
+from pendcore._accuracy.target_error import run_to_error
+from pendcore._messages.arguments import no_time_span, number
+from pendcore._messages.progress import ProgressBar, callback, close
+from pendcore._messages.warning import warn
+from pendcore._run.call import Start, completed
+from pendcore._run.events import events_asked_for
 from pendcore._run.keywords import RunKeywords
 from pendcore._run.methods import described_methods
-from pendcore._run.options import with_options
+from pendcore._run.options import (
+    ERROR,
+    ON_FAILURE,
+    OPTIONS,
+    RUN_DEFAULTS,
+    require_options,
+    with_options,
+)
+from pendcore._run.run_error import checked, require_on_failure
 from pendcore._run.solution import Solution
-from pendcore._scene.scene import Scene
+from pendcore._scene.scene import Scene, require_scene
 
 
 @with_options()
@@ -84,7 +99,58 @@ def simulate(
     >>> sol.accuracy.achieved <= 1e-9
     True
     """
-    return solve(scene, t_span, q0, qd0, options)  # type: ignore[arg-type]
+    # A short run takes two microseconds, and this function may hardly take more: it calls nothing
+    # that default options do not need.
+    asked: dict[str, Any] = options  # type: ignore[assignment]
+    if not isinstance(scene, Scene):
+        require_scene(scene)
+    on_failure, error = asked.pop("on_failure", "warn"), asked.pop("error", None)
+    if on_failure != "warn":
+        require_on_failure(on_failure)
+    try:
+        t_start, t_end = t_span
+    except (TypeError, ValueError):
+        raise no_time_span(t_span) from None
+    if "events" in asked:
+        asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
+    if error is not None:
+        require_options(asked)
+        start = Start(scene, q0, qd0, t_start, t_end)
+        return checked(_solved_to_error(start, error, asked), on_failure)
+    progress = asked.pop("progress", None)
+    report = ProgressBar() if progress is None else callback(progress)
+    try:
+        run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn)
+    except TypeError:
+        require_options(asked)
+        raise
+    solution = Solution(scene, run)
+    if run.success:
+        close(report)
+        return solution
+    return checked(completed(solution, report), on_failure)
 
 
 simulate.__doc__ = described_methods(simulate.__doc__)
+
+
+def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
+    error = _error_asked_for(error, options)
+    asked = {
+        name: options.get(name, option.default)
+        for name, option in OPTIONS.items()
+        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
+    }
+    return run_to_error(start, error, asked)
+
+
+def _error_asked_for(error: float, options: dict[str, Any]) -> float:
+    if not 0 < number("error", error, "") < 1:
+        raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
+    for name, value in options.items():
+        chosen = name in OPTIONS and OPTIONS[name].chosen_for_error
+        if chosen and not np.array_equal(value, RUN_DEFAULTS[name]):
+            raise ValueError(
+                f"{name} = {value!r}: is chosen for the error: leave out {name} or error"
+            )
+    return float(error)

@@ -134,7 +134,7 @@ class Case:
         >>> sol.name
         'double pendulum, section 2.1'
         """
-        from pendcore._api.solve import solve
+        from pendcore._api.simulate import simulate
         from pendcore._run.run_error import require_on_failure
 
         options = dict(self.options)
@@ -142,7 +142,7 @@ class Case:
         if on_failure is not None:
             options["on_failure"] = on_failure
         try:
-            solution = solve(self.scene, self.t_span, self.q0, self.qd0, options)
+            solution = simulate(self.scene, self.t_span, self.q0, self.qd0, **options)
         except BaseException as stop:
             if isinstance(so_far := getattr(stop, "solution", None), Solution):
                 so_far.name = self.name

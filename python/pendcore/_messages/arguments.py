@@ -88,22 +88,16 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def two_times(t_span: Any) -> tuple[Any, Any]:
-    """Return what is given as the start and the end of a run; the core checks them as times."""
-    try:
-        t_start, t_end = t_span
-    except (TypeError, ValueError):
-        raise _no_time_span(t_span) from None
-    return t_start, t_end
-
-
 def time_span(t_span: Any) -> tuple[float, float]:
     """Return the start and the end of a run, finite, as two floats."""
-    given = two_times(t_span)
     try:
-        t_start, t_end = (number("t_span", t, "s") for t in given)
+        given_start, given_end = t_span
+    except (TypeError, ValueError):
+        raise no_time_span(t_span) from None
+    try:
+        t_start, t_end = (number("t_span", t, "s") for t in (given_start, given_end))
     except TypeError:
-        raise _no_time_span(t_span) from None
+        raise no_time_span(t_span) from None
     for i, t in enumerate((t_start, t_end)):
         if not np.isfinite(t):
             raise ValueError(f"t_span[{i}] = {t}: must be finite (s)")
@@ -112,7 +106,8 @@ def time_span(t_span: Any) -> tuple[float, float]:
     return t_start, t_end
 
 
-def _no_time_span(t_span: object) -> TypeError:
+def no_time_span(t_span: object) -> TypeError:
+    """Return the error that says what a span is."""
     return TypeError(f"t_span = {t_span!r}: must be (t_start, t_end), in s")
 
 
