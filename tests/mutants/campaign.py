@@ -42,9 +42,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--tests-pass", action="store_true", help="without a mistake, it is known")
     parser.add_argument("--only", type=int, help="the number of one mutant, tried again")
     parser.add_argument("--seconds", type=float, default=1e9, help="begin no mutant after these")
-    parser.add_argument("--record", type=Path, help="default: out/mutants/PART.jsonl")
+    parser.add_argument("--record", type=Path, help="default: docs/records/mutants/PART.jsonl")
     asked = parser.parse_args(arguments)
-    record = asked.record or Path(f"out/mutants/{asked.part}.jsonl")
+    record = asked.record or ROOT / f"docs/records/mutants/{asked.part}.jsonl"
     commit = git(ROOT, "rev-parse", asked.commit)
     told = read(record, commit)
     workshop = Workshop(commit)

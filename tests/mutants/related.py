@@ -28,6 +28,8 @@ def related_first(root: Path, path: str) -> list[str]:
 @cache
 def words_of_tests(root: Path) -> dict[str, frozenset[str]]:
     files = sorted((root / "tests").rglob("test_*.py"))
+    # Those are about what pip installs, and a workshop installs nothing.
+    files = [file for file in files if file.parent.name != "packaging"]
     return {str(file.relative_to(root)): words_of(file.read_text()) for file in files}
 
 

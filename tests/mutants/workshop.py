@@ -86,7 +86,7 @@ class Workshop:
         return self.call(["cmake", "--build", BUILD, "--target", *targets])[0] == 0
 
     def installed(self) -> None:
-        run(["cmake", "--install", BUILD, "--prefix", SITE / "pendcore", "--component", "python"])
+        run(["cmake", "--install", BUILD, "--prefix", SITE / "pendcore"])
 
     def bytes_of_core(self) -> str:
         (core,) = (SITE / "pendcore").glob("_core*.so")
