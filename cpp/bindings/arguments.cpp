@@ -102,11 +102,16 @@ bool truth(std::string_view name, py::handle value) {
   return caster;
 }
 
+std::optional<std::string_view> utf8(py::handle text) {
+  Py_ssize_t size = 0;
+  const char* const found = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+  if (found == nullptr) return std::nullopt;
+  return std::string_view(found, static_cast<std::size_t>(size));
+}
+
 std::optional<std::string> text_of(py::handle value) {
   if (PyUnicode_Check(value.ptr()) == 0) return std::nullopt;
-  Py_ssize_t size = 0;
-  const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
-  if (text != nullptr) return std::string(text, static_cast<std::size_t>(size));
+  if (const auto text = utf8(value)) return std::string(*text);
   PyErr_Clear();
   return std::nullopt;
 }

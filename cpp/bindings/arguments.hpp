@@ -43,6 +43,10 @@ long long whole_number(std::string_view name, py::handle value);
 /// True or false, NumPy's as well. TypeError for anything else.
 bool truth(std::string_view name, py::handle value);
 
+/// The UTF-8 of a text, as long as that lives. Where no encoding has it, nothing is returned and
+/// Python's error is set. A cast would note the string in a table, to keep it alive.
+std::optional<std::string_view> utf8(py::handle text);
+
 /// The text; nothing is returned for anything else, or for a text that no encoding has (a lone
 /// surrogate).
 std::optional<std::string> text_of(py::handle value);

@@ -89,20 +89,14 @@ py::dict descriptor(const ParameterInfo& info, std::string_view annotation, py::
   return result;
 }
 
-/// The text of a keyword. A cast would note the string in a table, to keep it alive.
-std::string_view keyword_text(py::handle keyword) {
-  Py_ssize_t size = 0;
-  const char* const text = PyUnicode_AsUTF8AndSize(keyword.ptr(), &size);
-  if (text == nullptr) throw py::error_already_set();
-  return {text, static_cast<std::size_t>(size)};
-}
-
 }  // namespace
 
 Options options_of(const py::dict& given, std::size_t n) {
   Options options;
   for (const auto& [key, value] : given) {
-    const std::string_view name = keyword_text(key);
+    const auto keyword = utf8(key);
+    if (!keyword) throw py::error_already_set();
+    const std::string_view name = *keyword;
     const auto take_one = [&, &value = value](const auto& one) {
       if (one.info.name != name) return false;
       take_option(name, value, n, options.*(one.field));

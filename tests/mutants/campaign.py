@@ -19,6 +19,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import asdict
+from itertools import islice
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -38,43 +39,45 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("part", choices=PARTS)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--commit", default="HEAD", help="of which the mutants are made")
+    parser.add_argument("--commit", help="of which the mutants are: the record's, or HEAD")
     parser.add_argument("--tests-pass", action="store_true", help="without a mistake, it is known")
     parser.add_argument("--only", type=int, help="the number of one mutant, tried again")
     parser.add_argument("--seconds", type=float, default=1e9, help="begin no mutant after these")
     parser.add_argument("--record", type=Path, help="default: docs/records/mutants/PART.jsonl")
     asked = parser.parse_args(arguments)
     record = asked.record or ROOT / f"docs/records/mutants/{asked.part}.jsonl"
-    commit = git(ROOT, "rev-parse", asked.commit)
-    told = read(record, commit)
-    workshop = Workshop(commit)
-    is_new = not told and asked.only is None and not asked.tests_pass
-    if is_new and (plain := workshop.tested(None)).what != "alive":
+    told = read(record)
+    wanted = asked.commit or (told[0]["commit"] if told else "HEAD")
+    source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
+    if any(source.items() - one.items() for one in told):
+        parser.error(f"{record} is of another commit or seed: give another --record")
+    workshop = Workshop(source["commit"])
+    mutants_drawn = enumerate(drawn(asked.part, asked.seed))
+
+    def tried(number: int, mutant: Mutant) -> dict[str, Any]:
+        start = time.monotonic()
+        outcome = workshop.tested(mutant)
+        seconds = round(time.monotonic() - start, 1)
+        found = {"outcome": outcome.what, "by": outcome.by, "seconds": seconds}
+        return {"number": number, **source, **asdict(mutant), **found}
+
+    if asked.only is not None:
+        print(json.dumps(tried(*next(islice(mutants_drawn, asked.only, None))), indent=1))
+        return 0
+    if not (told or asked.tests_pass) and (plain := workshop.asked_of_tests()).what != "alive":
         print(f"the tests fail without a mistake: {plain.by}")
         return 1
     began = time.monotonic()
     counted = sum(one["outcome"] in COUNTED for one in told)
     record.parent.mkdir(parents=True, exist_ok=True)
     with tqdm(total=asked.count, initial=counted, unit="mutant", disable=None) as bar:
-        for number, mutant in enumerate(drawn(asked.part, asked.seed)):
-            is_next = number == asked.only if asked.only is not None else number >= len(told)
+        for number, mutant in islice(mutants_drawn, len(told), None):
             if counted >= asked.count or time.monotonic() - began > asked.seconds:
                 break
-            if not is_next:
-                continue
-            start = time.monotonic()
-            outcome = workshop.tested(mutant)
-            one = {
-                "number": number, "commit": commit, **asdict(mutant), "outcome": outcome.what,
-                "by": outcome.by, "seconds": round(time.monotonic() - start, 1),
-            }  # fmt: skip
-            if asked.only is not None:
-                print(json.dumps(one, indent=1))
-                return 0
-            told.append(one)
+            told.append(tried(number, mutant))
             with record.open("a") as lines:
-                print(json.dumps(one), file=lines)
-            if outcome.what in COUNTED:
+                print(json.dumps(told[-1]), file=lines)
+            if told[-1]["outcome"] in COUNTED:
                 counted += 1
                 bar.update()
     print(report(told))
@@ -95,13 +98,9 @@ def drawn(part: str, seed: int) -> Iterator[Mutant]:
         yield dice.choice(by_line[line])
 
 
-def read(record: Path, commit: str) -> list[dict[str, Any]]:
+def read(record: Path) -> list[dict[str, Any]]:
     """Return what a campaign has found so far."""
-    told = [json.loads(line) for line in record.read_text().splitlines()] if record.exists() else []
-    if any(one["commit"] != commit for one in told):
-        other = told[0]["commit"]
-        raise SystemExit(f"{record} is of {other[:12]}: give --commit {other[:12]} or --record")
-    return told
+    return [json.loads(line) for line in record.read_text().splitlines()] if record.exists() else []
 
 
 def report(told: list[dict[str, Any]]) -> str:

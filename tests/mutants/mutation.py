@@ -44,7 +44,7 @@ LEFT_ALONE = {
 
 @dataclass(frozen=True)
 class Mutant:
-    """What is written over the bytes from `start` to `end` of a file."""
+    """A mistake: `after` replaces `before`, which the bytes from `start` to `end` of a file are."""
 
     path: str
     line: int

@@ -38,7 +38,6 @@ class Workshop:
     """A clone of a commit, its core built, its package without a mistake."""
 
     def __init__(self, commit: str) -> None:
-        self.commit = commit
         self.environment = os.environ | {"PYTHONPATH": str(SITE), "MPLBACKEND": "Agg"}
         if not (SOURCE / ".git").exists():
             shutil.rmtree(PLACE, ignore_errors=True)
@@ -50,16 +49,15 @@ class Workshop:
             "-DPENDCORE_PYTHON=ON", "-DPENDCORE_TESTS=ON", f"-DPython_EXECUTABLE={sys.executable}",
             f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
         ])  # fmt: skip
-        self.built()
+        if not self.built():
+            raise SystemExit(f"{commit} does not build: cmake --build {BUILD} says why")
         shutil.rmtree(SITE, ignore_errors=True)
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
         self.installed()
         self.core = self.bytes_of_core()
 
-    def tested(self, mutant: Mutant | None) -> Outcome:
-        """Return what becomes of a mutant; without one, of the program itself."""
-        if mutant is None:
-            return self.killed("", is_core=True)
+    def tested(self, mutant: Mutant) -> Outcome:
+        """Return what becomes of a mutant."""
         file = SOURCE / mutant.path
         right = file.read_bytes()
         wrong = mutant.applied(right)
@@ -70,14 +68,14 @@ class Workshop:
         file.write_bytes(wrong)
         try:
             if mutant.path.endswith(".py"):
-                return self.killed(mutant.path, is_core=False)
+                return self.asked_of_tests(mutant.path, is_core=False)
             if not self.built():
                 return Outcome("no program")
             file.write_bytes(right)  # tests that build anew build what is right
             self.installed()
             if self.bytes_of_core() == self.core:
                 return Outcome("same program")
-            return self.killed(mutant.path, is_core=True)
+            return self.asked_of_tests(mutant.path, is_core=True)
         finally:
             file.write_bytes(right)
 
@@ -92,7 +90,7 @@ class Workshop:
         (core,) = (SITE / "pendcore").glob("_core*.so")
         return sha256(core.read_bytes()).hexdigest()
 
-    def killed(self, path: str, is_core: bool) -> Outcome:
+    def asked_of_tests(self, path: str = "", is_core: bool = True) -> Outcome:
         """Run the tests of `make test` until one fails; those first that speak of the file."""
         if is_core:
             code, said = self.call(

@@ -113,11 +113,11 @@ def by_threads() -> None:
         members(executor=pool, chunk=8)
 
 
-def members_with_check() -> None:
+def members_that_fail() -> None:
     pc.ensemble(BOOK, q0=np.zeros((4, 2)), t_span=(0, 1), max_steps=2, on_failure="raise")
 
 
-def with_check() -> None:
+def run_that_fails() -> None:
     pc.simulate(BOOK, **HERE, max_steps=50, on_failure="raise")
 
 
@@ -126,8 +126,8 @@ OTHERS: dict[str, Callable[[], object]] = {
     "error= by progress": lambda: by_progress(error=1e-6), "case": of_a_case,
     "lyapunov": lambda: pc.lyapunov(BOOK, q0=[0.5, 0.5], t_span=(0, 1e6), progress=show),
     "sol.error": of_its_error, "ensemble": members, "ensemble in blocks": in_blocks,
-    "ensemble by threads": by_threads, "ensemble with check": members_with_check,
-    "check": with_check,
+    "ensemble by threads": by_threads, "ensemble that fails": members_that_fail,
+    "run that fails": run_that_fails,
 }  # fmt: skip
 
 
@@ -279,7 +279,7 @@ def resident() -> float:
 
 def calls() -> Iterator[Callable[[], None]]:
     """Yield ways to be broken off; those that take 50 ms are rare."""
-    quick = [by_event, by_effect, resumed_by_event, of_a_case, with_check, members_with_check]
+    quick = [by_event, by_effect, resumed_by_event, of_a_case, run_that_fails, members_that_fail]
     slow = cycle([by_ctrl_c, by_progress, resumed])
     for i, one in enumerate(cycle(quick)):
         yield one if i % 100 else next(slow)

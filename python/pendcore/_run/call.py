@@ -89,7 +89,7 @@ def resumed(
     """Go on with a run; see `pendcore.Solution.resume`."""
     report = callback(progress)
     run = result._run.resume(t_end, t_eval, max_steps, time_limit, report)
-    return completed(type(result)(result.scene, run, result.name), report)
+    return completed(Solution(result.scene, run, result.name), report)
 
 
 def completed(result: Solution, report: Callable[[float], object] | None) -> Solution:

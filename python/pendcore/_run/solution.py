@@ -376,7 +376,7 @@ class Solution:
         limit : float
             rad; with ``of="position"`` a share of the total length.
         of : {"angle", "position"}
-            What is limited: the angles of the links, or the positions of joints and tip.
+            It limits the angles of the links, or the positions of joints and tip.
         time_limit : float, optional
             As in `estimate_error`; the answer is then how far the run is known to hold by then.
 

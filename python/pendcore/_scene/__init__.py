@@ -1,1 +1,1 @@
-"""What is simulated: links, gravity, effects."""
+"""Scenes have links, gravity and effects: all that is simulated stands here."""
