@@ -146,7 +146,7 @@ def test_a_contradiction_is_seen(drawn: Drawn) -> None:
         sol = pc.simulate(*scene_and_start, **options)
         estimate = sol.estimate_error()
         worse = replace(estimate, position=estimate.position + 2e-7)
-        return Claiming(sol, error=lambda **_: worse)
+        return Claiming(sol, estimate_error=lambda **_: worse)
 
     assert verdict_of(drawn, error=denied).faults == ["contradicted"]
 

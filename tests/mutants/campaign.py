@@ -40,7 +40,6 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--commit", help="of which the mutants are: the record's, or HEAD")
-    parser.add_argument("--tests-pass", action="store_true", help="without a mistake, it is known")
     parser.add_argument("--only", type=int, help="the number of one mutant, tried again")
     parser.add_argument("--seconds", type=float, default=1e9, help="begin no mutant after these")
     parser.add_argument("--record", type=Path, help="default: docs/records/mutants/PART.jsonl")
@@ -52,6 +51,9 @@ def main(arguments: list[str] | None = None) -> int:
     if any(source.items() - one.items() for one in told):
         parser.error(f"{record} is of another commit or seed: give another --record")
     workshop = Workshop(source["commit"])
+    if (plain := workshop.measured()).what != "alive":
+        print(f"the tests fail without a mistake: {plain.by}")
+        return 1
     mutants_drawn = enumerate(drawn(asked.part, asked.seed))
 
     def tried(number: int, mutant: Mutant) -> dict[str, Any]:
@@ -64,9 +66,6 @@ def main(arguments: list[str] | None = None) -> int:
     if asked.only is not None:
         print(json.dumps(tried(*next(islice(mutants_drawn, asked.only, None))), indent=1))
         return 0
-    if not (told or asked.tests_pass) and (plain := workshop.asked_of_tests()).what != "alive":
-        print(f"the tests fail without a mistake: {plain.by}")
-        return 1
     began = time.monotonic()
     counted = sum(one["outcome"] in COUNTED for one in told)
     record.parent.mkdir(parents=True, exist_ok=True)

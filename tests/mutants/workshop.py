@@ -8,18 +8,21 @@ import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 import pybind11
 
+from mutants import coverage_of_tests as coverage
 from mutants.mutation import Mutant
 from mutants.related import related_first
 
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
 SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
+TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 SILENT = 180.0
 """A test that takes so long has lost its way, s."""
 PATIENCE = 1800.0
@@ -38,6 +41,7 @@ class Workshop:
     """A clone of a commit, its core built, its package without a mistake."""
 
     def __init__(self, commit: str) -> None:
+        self.commit = commit
         self.environment = os.environ | {"PYTHONPATH": str(SITE), "MPLBACKEND": "Agg"}
         if not (SOURCE / ".git").exists():
             shutil.rmtree(PLACE, ignore_errors=True)
@@ -55,9 +59,30 @@ class Workshop:
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
         self.installed()
         self.core = self.bytes_of_core()
+        self.tests_of_lines: coverage.TestsOfLines = {}
+
+    def measured(self) -> Outcome:
+        """Run all tests without a mistake, and learn which of them run a line of the package."""
+        known = TESTS_OF_LINES.with_suffix(f".{self.commit}.json")
+        if not known.exists():
+            data = PLACE / "coverage/data"
+            shutil.rmtree(data.parent, ignore_errors=True)
+            data.parent.mkdir()
+            settings = data.with_name("settings.ini")
+            settings.write_text(coverage.SETTINGS.format(data=data, source=SITE / "pendcore"))
+            measuring = ["--cov", "--cov-context=test", "--cov-append", "--cov-report="]
+            outcome = self.asked_of_tests(
+                related_first(SOURCE, ""), [*measuring, f"--cov-config={settings}"]
+            )
+            if outcome.what != "alive":
+                return outcome
+            coverage.saved(coverage.told(data, SITE), known)
+        self.tests_of_lines = coverage.loaded(known)
+        return Outcome("alive")
 
     def tested(self, mutant: Mutant) -> Outcome:
-        """Return what becomes of a mutant."""
+        """Return what becomes of a mutant; those tests run first that speak of its file."""
+        tests = related_first(SOURCE, mutant.path)
         file = SOURCE / mutant.path
         right = file.read_bytes()
         wrong = mutant.applied(right)
@@ -65,19 +90,30 @@ class Workshop:
             file = SITE / mutant.path.removeprefix("python/")
             if not compiles(wrong):
                 return Outcome("no program")
+            tests = self.those_that_run(mutant, right.decode(), tests)
         file.write_bytes(wrong)
         try:
             if mutant.path.endswith(".py"):
-                return self.asked_of_tests(mutant.path, is_core=False)
+                return self.asked_of_tests(tests)
             if not self.built():
                 return Outcome("no program")
             file.write_bytes(right)  # tests that build anew build what is right
             self.installed()
             if self.bytes_of_core() == self.core:
                 return Outcome("same program")
-            return self.asked_of_tests(mutant.path, is_core=True)
+            outcome = self.asked_of_ctest()
+            return outcome if outcome.what == "killed" else self.asked_of_tests(tests)
         finally:
             file.write_bytes(right)
+
+    def those_that_run(self, mutant: Mutant, source: str, files: list[str]) -> list[str]:
+        """Return the tests that run the line of a mutant, in the order of their files."""
+        path = mutant.path.removeprefix("python/")
+        tests = coverage.tests_that_run(self.tests_of_lines, path, source, mutant.line)
+        if tests is None:
+            return files
+        place = {file: i for i, file in enumerate(files)}
+        return sorted(tests, key=lambda test: place.get(test.partition("::")[0], len(place)))
 
     def built(self) -> bool:
         targets = ["all", "tests/cpp/all"]
@@ -90,22 +126,25 @@ class Workshop:
         (core,) = (SITE / "pendcore").glob("_core*.so")
         return sha256(core.read_bytes()).hexdigest()
 
-    def asked_of_tests(self, path: str = "", is_core: bool = True) -> Outcome:
-        """Run the tests of `make test` until one fails; those first that speak of the file."""
-        if is_core:
-            code, said = self.call(
-                ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
-            )
-            if code:
-                return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
+    def asked_of_ctest(self) -> Outcome:
+        code, said = self.call(
+            ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
+        )
+        if code:
+            return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
+        return Outcome("alive")
+
+    def asked_of_tests(self, tests: list[str], more: Sequence[str] = ()) -> Outcome:
+        """Run tests of `make test` in an order until one fails."""
         pytest = [
             sys.executable, "-m", "pytest", "-q", "-x", "-n", "auto", "--maxschedchunk", "8",
             "-p", "no:cacheprovider", "-o", f"faulthandler_timeout={SILENT:g}",
-            "-o", "faulthandler_exit_on_timeout=true", "--hypothesis-seed=0",
+            "-o", "faulthandler_exit_on_timeout=true", "--hypothesis-seed=0", *more,
         ]  # fmt: skip
-        files = related_first(SOURCE, path)
+        names = PLACE / "tests.txt"  # they may be more than a command takes
+        names.write_text("\n".join(tests))
         for chosen in ("not outside_build", "outside_build"):
-            code, said = self.call([*pytest, "-m", chosen, *files])
+            code, said = self.call([*pytest, "-m", chosen, f"@{names}"])
             if code not in (0, 5):  # 5: no test is chosen
                 return Outcome("killed", first(r"^(?:FAILED|ERROR) (\S+)", said) or last_line(said))
         return Outcome("alive")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import threading
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -18,6 +19,10 @@ import numpy.typing as npt
 MOST_TIMES_PACKED = 100
 """The most that entries unpack to, as a multiple of their file. What pendcore and `numpy.savez`
 write is not compressed; zeros that are compressed come to a thousand."""
+
+_ONE_HEAD = threading.Lock()
+"""NumPy parses heads with `ast`, whose depth CPython before 3.11.8 counts for all threads together:
+two that parse at once may end with a SystemError (python/cpython#113035)."""
 
 
 class Entries(Mapping[str, npt.NDArray[Any]]):
@@ -71,6 +76,7 @@ def entries_of(file: BinaryIO) -> Iterator[Entries]:
 
 def _head(entry: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     """Return shape, whether the first axis runs fastest, and type."""
-    if np.lib.format.read_magic(entry) == (1, 0):
-        return np.lib.format.read_array_header_1_0(entry)
-    return np.lib.format.read_array_header_2_0(entry)
+    with _ONE_HEAD:
+        if np.lib.format.read_magic(entry) == (1, 0):
+            return np.lib.format.read_array_header_1_0(entry)
+        return np.lib.format.read_array_header_2_0(entry)
