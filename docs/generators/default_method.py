@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from pendcore._accuracy.position_error import distances, time_grid
+from pendcore._accuracy.position_error import time_grid
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
@@ -70,7 +70,7 @@ def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
 
     def error(solution: pc.Solution) -> float:
         other = "dop853" if solution.method.startswith("taylor") else "taylor"
-        return float(distances(solution.scene, solution.q, known[other]).max())
+        return float(solution.scene.distances(solution.q, known[other]).max())
 
     return error
 

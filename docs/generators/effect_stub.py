@@ -29,6 +29,9 @@ from pendcore._scene.effect_class import Part as Part
 
 def kinds() -> dict[str, type[Effect]]:
     """Return the class of every kind of effect, the kind as in case files."""
+
+def parts() -> dict[str, type[Part]]:
+    """Return the class of every part of an effect, such as the sinusoid of a motor, by its name."""
 '''
 TAKEN = {
     "optional float": "float",

@@ -23,8 +23,7 @@ import matplotlib as mpl
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
-from pendcore._ensemble.forbidden import is_forbidden
-from pendcore._ensemble.members import members_of
+from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cost.machine import processor
 from scipy.interpolate import CubicHermiteSpline
 
@@ -73,8 +72,7 @@ def flips(found: pc.Ensemble) -> Floats:
 def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
     """Compute the map, and a second time, and which pixels agree."""
     q0 = np.pi / 2 + half(count)
-    members = members_of(BOOK, q0, 0.0, None)
-    forbidden = np.all([is_forbidden(members, one) for one in EVENTS.values()], axis=0)
+    forbidden = np.all([is_forbidden(BOOK, q0, 0.0, one) for one in EVENTS.values()], axis=0)
     begin = perf_counter()
     keep = {name: pc.reducers.FirstEvent(one) for name, one in EVENTS.items()}
     asked = {"t_span": (0, t_end), "keep": keep, "max_steps": 10**9, "workers": workers}

@@ -28,7 +28,7 @@ joints count from 1. The examples in the docstrings need these two imports.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pendcore import effects, events, reducers, sampling
 from pendcore._accuracy.defect import Defect
@@ -39,9 +39,7 @@ from pendcore._cases.case import Case
 from pendcore._core import __version__
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._explanation.explanation import Explanation
-from pendcore._horizon.horizon_work import HorizonWork
 from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore._horizon.measure import horizon_work
 from pendcore._messages.warning import PendcoreWarning
 from pendcore._run.accuracy import Accuracy, AccuracyError
 from pendcore._run.energy import Energy, Ledger
@@ -53,17 +51,32 @@ from pendcore._run.statistics import Statistics
 from pendcore._scene.angles import angles_from_vertical, angles_to_vertical
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Mobility, Scene
-from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.sweep import accuracy_cost
+
+if TYPE_CHECKING:
+    from pendcore.cost.accuracy_cost import AccuracyCost
+    from pendcore.cost.horizon import horizon_work
+    from pendcore.cost.horizon_work import HorizonWork
+    from pendcore.cost.sweep import accuracy_cost
 
 
 def __dir__() -> list[str]:
     return [*__all__, "derive"]
 
 
+_WHEN_ASKED_FOR = {
+    "AccuracyCost": "pendcore.cost.accuracy_cost",
+    "HorizonWork": "pendcore.cost.horizon_work",
+    "accuracy_cost": "pendcore.cost.sweep",
+    "horizon_work": "pendcore.cost.horizon",
+}
+"""Names of extras, which stand on the rest of the package."""
+
+
 def __getattr__(name: str) -> Any:
     if name == "derive":  # SymPy is an extra, and takes its time
         return import_module("pendcore.derive")
+    if name in _WHEN_ASKED_FOR:
+        return getattr(import_module(_WHEN_ASKED_FOR[name]), name)
     raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
 
 

@@ -33,8 +33,19 @@ def kinds() -> dict[str, type[Effect]]:
     return dict(KINDS)
 
 
+def parts() -> dict[str, type[Part]]:
+    """Return the class of every part of an effect, such as the sinusoid of a motor, by its name.
+
+    Examples
+    --------
+    >>> "Sinusoid" in pc.effects.parts()
+    True
+    """
+    return dict(PARTS)
+
+
 def __getattr__(name: str) -> NoReturn:
     raise AttributeError(f"pendcore.effects has no {name!r}: {did_you_mean(name, __all__)}")
 
 
-__all__ = ["Effect", "Part", "kinds", *PARTS, *(cls.__name__ for cls in KINDS.values())]
+__all__ = ["Effect", "Part", "kinds", "parts", *PARTS, *(cls.__name__ for cls in KINDS.values())]

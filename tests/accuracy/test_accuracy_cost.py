@@ -11,12 +11,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._accuracy.position_error import distances, time_grid
-from pendcore._run.call import Start
+from pendcore._accuracy.position_error import time_grid
 from pendcore._run.methods import known_methods, line_style
 from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at
 from pendcore.cost.reference import reference
+from pendcore.cost.runs import Start
 
 BOOK = pc.Scene.textbook()
 START = ((0, 5), [np.pi / 4, np.pi / 3])
@@ -46,11 +46,11 @@ def test_distances_are_those_of_joints_and_tip():
     scene = pc.Scene(links=[pc.Link(mass=1, length=x) for x in lengths])
     q, r = rng.normal(size=(2, 50, 3))
     expected = abs(tips(q, lengths) - tips(r, lengths)).max(axis=-1) / sum(lengths)
-    assert distances(scene, q, r) == pytest.approx(expected, rel=1e-13)
-    assert distances(scene, q, q + 2 * np.pi).max() < 1e-14
-    tiny = distances(scene, q[:, :], q + 1e-17 * np.array([1, 0, 0]) * 2.0**20)
+    assert scene.distances(q, r) == pytest.approx(expected, rel=1e-13)
+    assert scene.distances(q, q + 2 * np.pi).max() < 1e-14
+    tiny = scene.distances(q[:, :], q + 1e-17 * np.array([1, 0, 0]) * 2.0**20)
     assert (tiny >= 0).all()
-    assert math.isnan(distances(scene, [math.nan, 0, 0], [0, 0, 0]))
+    assert math.isnan(scene.distances([math.nan, 0, 0], [0, 0, 0]))
 
 
 def test_a_grid_has_both_ends_and_no_time_twice():

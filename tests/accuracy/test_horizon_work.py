@@ -198,7 +198,7 @@ def test_who_stops_it_does_not_wait_for_exponents(monkeypatch: pytest.MonkeyPatc
     def pressed(*args: object, **named: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("pendcore._horizon.measure.lyapunov", pressed)
+    monkeypatch.setattr("pendcore.cost.horizon.lyapunov", pressed)
     options: dict[str, Any] = {"methods": "dopri5", "rtols": [1e-3, 1e-5, 1e-7]}
     with pytest.raises(KeyboardInterrupt) as raised:
         pc.horizon_work(BOOK, q0=CHAOTIC, t_span=(0, 10), progress=stop, **options)

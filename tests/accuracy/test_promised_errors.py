@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._accuracy.position_error import distances, times_within_steps
+from pendcore._accuracy.position_error import times_within_steps
 from pendcore._accuracy.trials import Trials
 
 BOOK = pc.Scene.textbook()
@@ -168,7 +168,7 @@ def test_second_runs_of_a_series_are_tighter_than_the_tightest_trial() -> None:
     tight = {"rtol": 1e-15, "atol": 1e-18, "compensated": True}
     better = pc.simulate(*start, method="dop853", t_eval=t, **tight)
     sol = pc.simulate(*start, error=3.694588949553511e-11)
-    assert distances(scene, sol(t).T[:, :2], better.q).max() <= sol.accuracy.achieved
+    assert scene.distances(sol(t).T[:, :2], better.q).max() <= sol.accuracy.achieved
 
 
 def test_steps_that_are_cut_often_enough_are_cut_no_further() -> None:
@@ -192,7 +192,7 @@ def test_a_run_whose_link_is_lost_is_not_kept_though_positions_agree_until_then(
     exact = pc.simulate(scene, q0=(0.3, 2.0), t_span=(0, 20), method="dop853", rtol=1e-14)
     t = np.linspace(0, 20, 2001)
     n = len(scene.links)
-    assert distances(scene, sol(t)[:n].T, exact(t)[:n].T).max() <= sol.accuracy.achieved <= 0.01
+    assert scene.distances(sol(t)[:n].T, exact(t)[:n].T).max() <= sol.accuracy.achieved <= 0.01
 
 
 @pytest.mark.parametrize(
@@ -233,7 +233,7 @@ def test_second_runs_take_other_steps_where_breaks_limit_them() -> None:
         sol = pc.simulate(scene, *start, error=error)
         assert 2 * sol.stats.limited_by_break > sol.stats.accepted
         t = np.linspace(5.3, sol.t[-2], 2001)
-        apart = distances(scene, sol(t)[:1].T, exact(t)[:1].T).max()
+        apart = scene.distances(sol(t)[:1].T, exact(t)[:1].T).max()
         assert 1e-12 < apart <= sol.accuracy.achieved <= error
 
 

@@ -53,7 +53,8 @@ STAGE_OF_PUBLIC_HEADER = {
 MOST_PUBLIC_HEADERS = 30
 
 # Python's layers, each above those that it may import: the folders of the package, the compiled
-# core below them. The package's own files, the names that users import, are `pendcore` itself.
+# core below them. The package's own files, the names that users import, are `pendcore` itself; the
+# extras above it stand on these names alone.
 PYTHON_LAYERS = [
     "_core",
     "_messages",
@@ -65,20 +66,21 @@ PYTHON_LAYERS = [
     "_cases",
     "_views",
     "_figures",
-    "films",
-    "page",
     "_ensemble",
     "_api",
+    "pendcore",
+    "films",
+    "page",
     "cost",
     "derive",
-    "pendcore",
     "cli",
 ]
+EXTRAS = PYTHON_LAYERS[PYTHON_LAYERS.index("pendcore") + 1 :]
 
-# The classes that users hold. Their methods lead to the rooms above, and import them when called.
+# The classes that users hold, and the package. They lead to the rooms above when they are asked.
 HELD_BY_USERS = {
     f"python/pendcore/{name}.py"
-    for name in ("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble")
+    for name in ("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble", "__init__")
 }
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}
@@ -232,6 +234,34 @@ def imports_form_no_circle(root: Path) -> Iterator[str]:
         yield f"a circle of imports: {' <- '.join(error.args[1])}"
 
 
+def extras_stand_on_public_names(root: Path) -> Iterator[str]:
+    """Extras import nothing private, and touch no private attribute of what the package gives."""
+    trees = {name: ast.parse(path.read_text()) for name, path in modules_of(root).items()}
+    private = {
+        node.attr
+        for name, tree in trees.items()
+        for node in ast.walk(tree)
+        if layer_of(name) not in EXTRAS
+        and isinstance(node, ast.Attribute)
+        and is_private(node.attr)
+    } - {"_asdict", "_replace", "_fields"}
+    for name, tree in trees.items():
+        if layer_of(name) not in EXTRAS:
+            continue
+        for imported, _ in imports_of(tree):
+            if any(map(is_private, imported.split("."))) and layer_of(imported) not in EXTRAS:
+                yield f"{name} imports {imported}, which is private"
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Attribute) or node.attr not in private:
+                continue
+            if not (isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")):
+                yield f"{name} uses {ast.unparse(node)}, which is private"
+
+
+def is_private(name: str) -> bool:
+    return name.startswith("_") and not name.startswith("__")
+
+
 def names_say_what_a_file_holds(root: Path) -> Iterator[str]:
     for path in files(root, CODE | {".md", ".mjs", ".txt"}, *FOLDERS):
         relative = path.relative_to(root)
@@ -324,6 +354,7 @@ RULES: list[Rule] = [
     sources_stand_where_their_headers_do,
     imports_go_down,
     imports_form_no_circle,
+    extras_stand_on_public_names,
     names_say_what_a_file_holds,
     files_are_short,
     comments_have_a_subject,

@@ -6,10 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._ensemble.forbidden import is_forbidden
-from pendcore._ensemble.members import members_of
-from pendcore._ensemble.refinement import refined
 from pendcore._ensemble.trust import second
+from pendcore.cli.map.forbidden import is_forbidden
+from pendcore.cli.map.refinement import refined
 
 BOOK = pc.Scene.textbook()
 UPRIGHT = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
@@ -80,7 +79,7 @@ def test_events_are_compared_by_their_times():
 def test_energy_forbids_what_does_not_happen():
     q0 = plane(20)
     theta = q0 - np.pi / 2
-    forbidden = is_forbidden(members_of(BOOK, q0, 0.0, None), UPRIGHT)
+    forbidden = is_forbidden(BOOK, q0, 0.0, UPRIGHT)
     heyl = 3 * np.cos(theta[..., 0]) + np.cos(theta[..., 1]) > 2  # Heyl (2008)
     assert np.array_equal(forbidden, heyl)
     found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), keep=pc.reducers.FirstEvent(UPRIGHT))
@@ -97,7 +96,7 @@ def test_nothing_that_happens_is_called_forbidden(link, value):
     event = pc.events.LinkAngle(link, value, every_turn=True, terminal=True)
     q0 = pc.sampling.uniform(-3, 3, (60, 3), seed=link)
     qd0 = pc.sampling.uniform(-2, 2, (60, 3), seed=link + 9)
-    forbidden = is_forbidden(members_of(scene, q0, qd0, None), event)
+    forbidden = is_forbidden(scene, q0, qd0, event)
     found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=(0, 10), keep=pc.reducers.FirstEvent(event))
     assert not np.isfinite(found["first_event"][forbidden]).any()
 
@@ -105,10 +104,9 @@ def test_nothing_that_happens_is_called_forbidden(link, value):
 def test_nothing_is_known_of_scenes_with_effects():
     scene = BOOK.replace(effects=[pc.effects.Motor(joint=1, constant=30.0)])
     q0 = plane(4)
-    assert not is_forbidden(members_of(scene, q0, 0.0, None), UPRIGHT).any()
-    assert not is_forbidden(members_of(BOOK, q0, 0.0, {"gravity": 9.0}), UPRIGHT).any()
+    assert not is_forbidden(scene, q0, 0.0, UPRIGHT).any()
     line = pc.events.TipLine(point=(0.0, -9.0), normal=(0.0, 1.0))
-    assert not is_forbidden(members_of(BOOK, q0, 0.0, None), line).any()
+    assert not is_forbidden(BOOK, q0, 0.0, line).any()
 
 
 def test_a_map_is_refined_where_neighbours_differ():

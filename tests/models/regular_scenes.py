@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from pendcore._accuracy.position_error import distances, time_grid
+from pendcore._accuracy.position_error import time_grid
 from pendcore._run.work import series_work
 
 REGULAR = 100.0
@@ -45,7 +45,7 @@ class Regular:
         return self.distance(solution, "dop853" if solution.method == "taylor" else "taylor")
 
     def distance(self, solution: pc.Solution, method: str) -> float:
-        return float(distances(solution.scene, solution.q, self.known[method]).max())
+        return float(solution.scene.distances(solution.q, self.known[method]).max())
 
     def cheapest(self) -> tuple[str, float, float, float]:
         """Return the least work that keeps the error, of all that was swept."""
@@ -61,7 +61,7 @@ def regular(seed: int) -> Regular:
             break
     draft = Regular(arguments, 1.0, {}, [])
     known = {method: draft.run(method=method, **EXACT).q for method in METHODS[1:]}
-    limit = float(distances(arguments[0], known["dop853"], known["taylor"]).max())
+    limit = float(arguments[0].distances(known["dop853"], known["taylor"]).max())
     error = max(10 ** rng.uniform(-10, -2), 30 * limit)
     draft = Regular(arguments, error, known, [])
     for method in METHODS:
@@ -81,7 +81,7 @@ def growth(scene: pc.Scene, span: tuple[float, float], q0: np.ndarray, qd0: np.n
     one, other = (
         pc.simulate(scene, q0=q0 + d, qd0=qd0, t_span=span, **options).q for d in (0, NUDGE)
     )
-    return float(distances(scene, one, other).max()) / NUDGE
+    return float(scene.distances(one, other).max()) / NUDGE
 
 
 def scene_and_start(rng: np.random.Generator) -> tuple[Any, ...]:

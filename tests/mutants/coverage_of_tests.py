@@ -16,7 +16,7 @@ source = {source}
 parallel = true
 patch = subprocess
 """
-"""Lines that run in a process of their own count, too, but not for a test: all tests are run."""
+"""A line that runs in a process of its own counts as run outside a test."""
 
 TestsOfLines = dict[str, dict[int, list[str]]]
 """By file and line, the tests that run it; the empty name is for what runs outside a test."""
@@ -41,12 +41,12 @@ def name_of(context: str) -> str:
     return context.partition("|")[0].partition("[")[0]
 
 
-def tests_that_run(tests: TestsOfLines, path: str, source: str, line: int) -> list[str] | None:
-    """Return the tests that run the statement on a line; None if others may, too."""
+def tests_that_run(tests: TestsOfLines, path: str, source: str, line: int) -> list[str]:
+    """Return the tests that run the statement on a line."""
     of_file = tests.get(path, {})
     begin, end = statement_at(source, line)
-    found = {test for one in range(begin, end + 1) for test in of_file.get(one, [])}
-    return sorted(found) if found and "" not in found else None
+    found = {test for one in range(begin, end + 1) for test in of_file.get(one, [])} - {""}
+    return sorted(found)
 
 
 def statement_at(source: str, line: int) -> tuple[int, int]:

@@ -23,6 +23,8 @@ ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
 SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
 TESTS_OF_LINES = PLACE / "tests_of_lines.json"
+KINDS = ("not outside_build", "outside_build")
+"""The tests that build something outside the project come last."""
 SILENT = 180.0
 """A test that takes so long has lost its way, s."""
 PATIENCE = 1800.0
@@ -72,7 +74,7 @@ class Workshop:
             settings.write_text(coverage.SETTINGS.format(data=data, source=SITE / "pendcore"))
             measuring = ["--cov", "--cov-context=test", "--cov-append", "--cov-report="]
             outcome = self.asked_of_tests(
-                related_first(SOURCE, ""), [*measuring, f"--cov-config={settings}"]
+                related_first(SOURCE, ""), more=[*measuring, f"--cov-config={settings}"]
             )
             if outcome.what != "alive":
                 return outcome
@@ -82,7 +84,7 @@ class Workshop:
 
     def tested(self, mutant: Mutant) -> Outcome:
         """Return what becomes of a mutant; those tests run first that speak of its file."""
-        tests = related_first(SOURCE, mutant.path)
+        tests, kinds = related_first(SOURCE, mutant.path), KINDS
         file = SOURCE / mutant.path
         right = file.read_bytes()
         wrong = mutant.applied(right)
@@ -90,11 +92,12 @@ class Workshop:
             file = SITE / mutant.path.removeprefix("python/")
             if not compiles(wrong):
                 return Outcome("no program")
-            tests = self.those_that_run(mutant, right.decode(), tests)
+            if known := self.those_that_run(mutant, right.decode(), tests):
+                tests, kinds = known, KINDS[:1]  # what is built outside is the core
         file.write_bytes(wrong)
         try:
             if mutant.path.endswith(".py"):
-                return self.asked_of_tests(tests)
+                return self.asked_of_tests(tests, kinds)
             if not self.built():
                 return Outcome("no program")
             file.write_bytes(right)  # tests that build anew build what is right
@@ -107,11 +110,15 @@ class Workshop:
             file.write_bytes(right)
 
     def those_that_run(self, mutant: Mutant, source: str, files: list[str]) -> list[str]:
-        """Return the tests that run the line of a mutant, in the order of their files."""
+        """Return the tests that run the line of a mutant, or may in a process of their own.
+
+        There are none where it runs outside tests alone.
+        """
         path = mutant.path.removeprefix("python/")
         tests = coverage.tests_that_run(self.tests_of_lines, path, source, mutant.line)
-        if tests is None:
-            return files
+        if not tests:
+            return []
+        tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
         place = {file: i for i, file in enumerate(files)}
         return sorted(tests, key=lambda test: place.get(test.partition("::")[0], len(place)))
 
@@ -134,7 +141,9 @@ class Workshop:
             return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
         return Outcome("alive")
 
-    def asked_of_tests(self, tests: list[str], more: Sequence[str] = ()) -> Outcome:
+    def asked_of_tests(
+        self, tests: list[str], kinds: Sequence[str] = KINDS, more: Sequence[str] = ()
+    ) -> Outcome:
         """Run tests of `make test` in an order until one fails."""
         pytest = [
             sys.executable, "-m", "pytest", "-q", "-x", "-n", "auto", "--maxschedchunk", "8",
@@ -143,7 +152,7 @@ class Workshop:
         ]  # fmt: skip
         names = PLACE / "tests.txt"  # they may be more than a command takes
         names.write_text("\n".join(tests))
-        for chosen in ("not outside_build", "outside_build"):
+        for chosen in kinds:
             code, said = self.call([*pytest, "-m", chosen, f"@{names}"])
             if code not in (0, 5):  # 5: no test is chosen
                 return Outcome("killed", first(r"^(?:FAILED|ERROR) (\S+)", said) or last_line(said))

@@ -270,7 +270,7 @@ def test_help_and_version_are_printed(argv, said, capsys):
 
 
 def test_a_wrong_instruction_set_does_not_hide_behind_the_version(monkeypatch, capsys):
-    monkeypatch.setattr(pc._core, "instruction_set", lambda: int("x86-64-v9"))
+    monkeypatch.setattr("pendcore.build.instruction_set", lambda: int("x86-64-v9"))
     assert main(["--version"]) == 2
     assert "x86-64-v9" in capsys.readouterr().err
 

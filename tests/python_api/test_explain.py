@@ -296,7 +296,7 @@ def test_what_is_absent_is_told_and_what_is_present_is_not():
 
 def test_the_summary_of_a_run_tells_the_same():
     scene = rods(2, fx.ViscousJoint(1, 0.1))
-    from pendcore._views.summary import facts, text
+    from pendcore.cli.summary import facts, text
 
     found = facts(pc.simulate(scene, q0=1.0, t_span=(0, 1), ledger=True))
     told = scene.explain().to_dict()["not_simulated"]

@@ -11,8 +11,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore._run import largest_reactions
-from pendcore._views.summary import facts, text
 from pendcore.cli import main
+from pendcore.cli.summary import facts, text
 
 fx = pc.effects
 ROD = pc.Link(mass=1.0, length=1.0)

@@ -11,8 +11,8 @@ from math import pi
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._views.summary import facts
-from pendcore._views.summary import text as summary_text
+from pendcore.cli.summary import facts
+from pendcore.cli.summary import text as summary_text
 
 G = 9.807
 SCENE = pc.Scene(

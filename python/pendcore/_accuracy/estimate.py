@@ -19,7 +19,6 @@ not all agree with a run that is wrong.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 from itertools import combinations
 from math import inf
 from time import monotonic
@@ -27,10 +26,9 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from pendcore._accuracy.method_choice import TIGHTEST, second_methods
+from pendcore._accuracy.method_choice import second_methods
 from pendcore._accuracy.position_error import (
     angles_at,
-    distances,
     kept_times,
     largest_difference,
     reached,
@@ -42,6 +40,7 @@ from pendcore._messages.arguments import Floats, time_limit_of
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._run.call import Choice, Start, resumed, run, start_of, tightened
 from pendcore._run.error_estimate import ErrorEstimate
+from pendcore._run.methods import TIGHTEST
 from pendcore._run.solution import Solution
 
 Report: TypeAlias = Callable[[float], object]
@@ -120,7 +119,7 @@ def apart(solution: Solution, t: Floats, others: Callable[[slice], list[Floats]]
         from_each_other = [*combinations(motions, 2)] or [(q, q)]  # one alone is 0 apart
         largest = [
             np.max([measure(r, s) for r, s in pairs], axis=0)
-            for measure in (largest_difference, partial(distances, solution.scene))
+            for measure in (largest_difference, solution.scene.distances)
             for pairs in (from_run, from_each_other)
         ]
         found.append(np.array([*largest, rounding]))

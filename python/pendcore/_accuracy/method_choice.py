@@ -14,17 +14,15 @@ from math import floor, log10
 import numpy as np
 
 from pendcore._run.call import Start, supports
-from pendcore._run.methods import known_methods, most_accurate, pair_of
+from pendcore._run.methods import TIGHTEST, known_methods, most_accurate, pair_of
 from pendcore._run.statistics import Statistics
 from pendcore._run.work import series_work
 
-LOOSEST, TIGHTEST = 1e-2, 1e-14
-"""Bounds of rtol. Below the tightest, smaller steps add more rounding than they save truncation."""
+LOOSEST = 1e-2
+"""The loosest rtol that is chosen."""
 TIGHTEST_SECOND = {"taylor": 10 * float(np.finfo(np.float64).eps)}
 """The tightest rtol of a second run of ``taylor``, whose truncation is to be less than a trial's.
 Rounding cannot mislead its step size, as it has no error estimate."""
-TIGHTEST_IMPLICIT = 1e-13
-"""The tightest rtol of an implicit method; its equations are not solved more exactly."""
 SERIES_TO_DOP853 = 0.092
 """The typical number of series of taylor for each right-hand side of dop853, at rtol 1e-3."""
 TAYLOR_BELOW = ((0.9, 5e-3), (1.08, 2e-5), (1.2, 1e-6), (1.6, 3e-6), (4.0, 1e-10))

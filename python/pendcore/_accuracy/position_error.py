@@ -1,14 +1,4 @@
-"""How far apart two computed motions are, and at which times to look.
-
-The measure is the distance between the places of the same joint, or of the tip, in both motions,
-the largest over the joints and the tip, divided by the total length. It is of the order of 1 where
-the motions have nothing in common any more, and 0 for angles that differ by whole turns. A link of
-the length L adds to the distance, in the complex plane and from the pivot outwards,
-
-    L (exp(i q) - exp(i r)) = 2 i L sin((q - r)/2) exp(i (q + r)/2),
-
-whose right-hand side loses no digits where q and r are close.
-"""
+"""At which times to look how far apart two computed motions are: see `Scene.distances`."""
 
 from __future__ import annotations
 
@@ -20,7 +10,6 @@ import numpy.typing as npt
 
 from pendcore._messages.arguments import Floats
 from pendcore._run.solution import Solution
-from pendcore._scene.scene import Scene
 
 POINTS = 101
 """The number of times on the fixed grid on which methods are compared, both ends included."""
@@ -90,24 +79,6 @@ def states_at(solution: Solution, t: Floats) -> Floats:
     if (rows == len(solution.t)).any() or (solution.t[rows] != t).any():
         raise ValueError(f"t: the solution kept its state at {len(solution.t)} other times (s)")
     return kept[rows]
-
-
-def distances(scene: Scene, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
-    """Return how far apart two motions of a scene are, as a share of the total length, (...).
-
-    It is the largest distance over the joints and the tip; NaN where an angle is not finite. Both
-    are absolute angles, rad, (..., n). A driven pivot moves alike in both motions.
-    """
-    q, r = np.asarray(q, dtype=np.float64), np.asarray(reference, dtype=np.float64)
-    lengths = np.array([link.length for link in scene.links])
-    lengths = lengths / lengths.sum()
-    place, apart = np.complex128(), np.float64()
-    with np.errstate(all="ignore"):
-        for i, length in enumerate(lengths):  # numpy is slow along an axis as short as a chain
-            chord = 2 * length * np.sin((q[..., i] - r[..., i]) / 2)
-            place = place + chord * np.exp(0.5j * (q[..., i] + r[..., i]))
-            apart = np.maximum(apart, np.abs(place))
-    return np.asarray(apart)
 
 
 def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:

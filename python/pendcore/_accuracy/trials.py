@@ -19,8 +19,6 @@ from pendcore._accuracy.estimate import (
     second_times,
 )
 from pendcore._accuracy.method_choice import (
-    TIGHTEST,
-    TIGHTEST_IMPLICIT,
     TIGHTEST_SECOND,
     cheapest,
     leading,
@@ -34,7 +32,13 @@ from pendcore._messages.warning import warn
 from pendcore._run.accuracy import DEFECT, Accuracy, Outcome, Paid
 from pendcore._run.call import Choice, Start, atol_beside, resumed, run, silent
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.methods import error_over_rtol, implicit_method, pair_of
+from pendcore._run.methods import (
+    TIGHTEST,
+    TIGHTEST_IMPLICIT,
+    error_over_rtol,
+    implicit_method,
+    pair_of,
+)
 from pendcore._run.solution import Solution
 from pendcore._run.work import correction_work, series_work
 from pendcore._scene.effect_description import Description

@@ -88,14 +88,6 @@ def read_case(source: str | os.PathLike[str]) -> Case:
     return case_from(source)
 
 
-def load_solution(path: str | os.PathLike[str]) -> Solution:
-    """Read a solution; an ensemble is refused with a ValueError."""
-    found = load(path)
-    if isinstance(found, Ensemble):
-        raise ValueError(f"{path}: is an ensemble, not a solution: pc.load() reads it, in Python")
-    return found
-
-
 def _from_store(path: Path) -> Ensemble:
     store = opened(path)
     found = Ensemble(store.members, store.request, store.arrays)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore._accuracy.estimate import TIGHTER
-from pendcore._accuracy.method_choice import TIGHTEST, second_methods
+from pendcore._accuracy.method_choice import second_methods
 from pendcore._accuracy.rounding import LAST_BITS, moved
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
@@ -25,6 +25,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.sampling import uniform
 from pendcore._messages.arguments import Floats
 from pendcore._run.call import Choice, Start, run, tightened
+from pendcore._run.methods import TIGHTEST
 
 ANGLE = 0.1
 """rad and rad/s: states that are farther apart are not the same."""

@@ -10,6 +10,11 @@ from typing import Any
 
 from pendcore import _core
 
+TIGHTEST = 1e-14
+"""Below this rtol smaller steps add more rounding than they save truncation."""
+TIGHTEST_IMPLICIT = 1e-13
+"""The tightest rtol of an implicit method; its equations are not solved more exactly."""
+
 
 @cache
 def known_methods() -> Mapping[str, Mapping[str, Any]]:
@@ -90,3 +95,19 @@ def pair_of(first: str) -> str:
     """Return the pair that begins with a method."""
     pairs = [one for one in known_methods().values() if one["kind"] == "pair"]
     return str(next(pair["name"] for pair in pairs if pair["first"] == first))
+
+
+def evaluations(method: str, last_method: str, nfev: int) -> str:
+    """Return the number of evaluations: series of Taylor's method, right-hand sides of others."""
+    known = known_methods()
+    first = known[method]["first"] or method
+    if not known[first]["dense_output_is_series"]:
+        return f"{nfev} right-hand sides"
+    if last_method != first:
+        return f"{nfev} series and right-hand sides"
+    return f"{nfev} series, each as long as many right-hand sides"
+
+
+def tightest_rtol(method: str) -> float:
+    """Return the rtol below which a run by a method gets no more accurate."""
+    return TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST

@@ -7,11 +7,6 @@ from typing import Any
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.solution import Solution
 
-CAN_GO_ON = frozenset({"max_steps", "max_turns", "time_limit", "interrupted"})
-"""The statuses after which `Solution.resume` gets further, even in a loaded run without its
-functions."""
-
-
 REMEDY = 'on_failure="raise" raises an error, on_failure="ignore" says nothing'
 
 
@@ -79,6 +74,6 @@ def _complaint(solution: Solution) -> str:
     )
     if solution.accuracy is not None:
         return f"{complaint}; its error: {solution.accuracy.text()}"
-    if solution.status in CAN_GO_ON and "resume" not in message:
+    if solution.can_resume and "resume" not in message:
         complaint += f"; solution.resume({t_end!r}) continues it"
     return complaint

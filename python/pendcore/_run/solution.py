@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from pendcore._cases.case import Case
     from pendcore._figures.plot import What
     from pendcore._horizon.lyapunov import LyapunovExponents
+    from pendcore._views.energy_drift import EnergyDrift
     from pendcore.page.notebook import NotebookPage
 
 
@@ -108,6 +109,12 @@ class Solution:
     def y(self) -> Floats:
         """States as SciPy lays them out, (2n, n_t): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
         return self._run.states.T
+
+    @property
+    def t_span(self) -> tuple[float, float]:
+        """Start and end of the run, s, as they were asked for."""
+        asked = self._run.arguments
+        return float(asked["t_start"]), float(asked["t_end"])
 
     @property
     def t_reached(self) -> float:
@@ -186,6 +193,32 @@ class Solution:
     def store(self) -> str:
         """What was kept: ``"dense"``, ``"steps"``, ``"times"`` or ``"end"``."""
         return self._run.store
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Every option of the run by its name: those given, those chosen, and defaults."""
+        start = ("q0", "qd0", "t_start", "t_end", "events")
+        return {name: x for name, x in self._run.arguments.items() if name not in start}
+
+    @property
+    def last_method(self) -> str:
+        """Name of the method of the last step: of a pair, the one that it ended with."""
+        return self._run.last_method
+
+    @property
+    def step_starts(self) -> Floats:
+        """Times at which the accepted steps begin, s, whatever was kept."""
+        return self._run.step_starts
+
+    @property
+    def fingerprint(self) -> str:
+        """A hash of every bit of the run: equal runs on any machine have equal ones."""
+        return self._run.fingerprint
+
+    @property
+    def can_resume(self) -> bool:
+        """Whether a limit or Ctrl-C ended the run, so that `resume` gets further."""
+        return self.status in ("max_steps", "max_turns", "time_limit", "interrupted")
 
     @property
     def stats(self) -> Statistics:
@@ -291,6 +324,34 @@ class Solution:
         """
         run = self._run
         return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
+
+    def energy_drift(self) -> EnergyDrift:
+        """Return how well the run kept its energy, or the ledger's balance where effects do work.
+
+        Examples
+        --------
+        >>> drift = pc.Case.textbook().simulate().energy_drift()
+        >>> f"{drift.largest_drift:.0e} J", drift.too_large
+        ('2e-09 J', False)
+        """
+        from pendcore._views.energy_drift import energy_drift
+
+        return energy_drift(self)
+
+    def trusted_digits(self) -> int:
+        """Return how many digits of the run's forces are worth printing, 2 to 6.
+
+        By tolerance, energy drift and any verified error. It does not hold past the time to which a
+        chaotic run is right: see `estimate_error`.
+
+        Examples
+        --------
+        >>> pc.Case.textbook().simulate().trusted_digits()
+        6
+        """
+        from pendcore._views.trusted_digits import trusted_digits
+
+        return trusted_digits(self)
 
     def largest_reactions(self, *, progress: Progress = None) -> list[LargestReaction]:
         """Return the largest force of each joint: ``.joint``, ``.force`` (N), ``.t`` (s).
@@ -407,6 +468,25 @@ class Solution:
         from pendcore._horizon.lyapunov import lyapunov_of
 
         return lyapunov_of(self, count, transient, t_eval, progress)
+
+    def with_dense_output(self) -> Solution:
+        """Return the run with a state at any time; one that kept none is run again, to the bit.
+
+        Raises
+        ------
+        ValueError
+            If the run cannot be had again: a function of the user's gives other values now, another
+            version wrote the file, or the dense output would take more than 2 GiB.
+
+        Examples
+        --------
+        >>> ends = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, store="end")
+        >>> ends.with_dense_output()(2.5).round(4)
+        array([ 0.8911,  1.0262,  2.5327, -1.0463])
+        """
+        from pendcore._run.dense_output import with_dense_output
+
+        return with_dense_output(self)
 
     def resume(
         self,

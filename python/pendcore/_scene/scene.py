@@ -20,6 +20,7 @@ from pendcore._messages.arguments import (
     finite_array,
     link_array,
     number,
+    time_span,
     vector,
 )
 from pendcore._messages.html import beside, drawing, table
@@ -30,6 +31,7 @@ from pendcore._scene.parameters import changed
 
 if TYPE_CHECKING:
     from pendcore._explanation.explanation import Explanation
+    from pendcore._explanation.not_modelled import Absence
 
 Member = TypeVar("Member")
 MOST_ROWS = 20
@@ -240,24 +242,115 @@ class Scene:
         >>> scene.accelerations([0.0, 1.0], q=np.zeros((2, 2)), qd=[0.0, 0.0]).shape
         (2, 2)
         """
-        n = len(self.links)
         found = self._compiled.acceleration_of_state(t, q, qd)
         if found is not None:  # one state of plain numbers costs a microsecond, as in a loop
             return found
+        lead, states = self._broadcast(t, q=q, qd=qd)
+        return self._compiled.accelerations(*states).reshape(*lead, len(self.links))
+
+    def positions(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
+        """Pivot, joints and tip, m, (..., n+1, 2): x right, y down; a driven pivot moves.
+
+        ``t`` and ``q`` are as in `accelerations`.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().positions(0.0, [0.0, np.pi / 2]).round(3)  # pivot, joint 2, tip
+        array([[0., 0.],
+               [1., 0.],
+               [1., 1.]])
+        """
+        lead, states = self._broadcast(t, q=q)
+        return self._compiled.positions(*states).reshape(*lead, len(self.links) + 1, 2)
+
+    def reactions(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
+        """Force on each link at the joint where it begins, N, (..., n, 2): x right, y down.
+
+        The arguments are as in `accelerations`. The textbook's F_01 (the ground's on link 1), F_12
+        (link 1's on link 2), and so on.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().reactions(0.0, [np.pi / 2, np.pi / 2], [0.0, 0.0]).round(3)
+        array([[  0.   , -19.614],
+               [  0.   ,  -9.807]])
+        """
+        lead, states = self._broadcast(t, q=q, qd=qd)
+        return self._compiled.reactions(*states).reshape(*lead, len(self.links), 2)
+
+    def energy(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike
+    ) -> tuple[Floats, Floats]:
+        """Kinetic and potential energy, J, each (...); the arguments are as in `accelerations`.
+
+        The potential energy is zero where all links are level, and springs are at rest.
+
+        Examples
+        --------
+        >>> kinetic, potential = pc.Scene.textbook().energy(0.0, [0.0, np.pi / 2], [2.0, 0.0])
+        >>> f"{kinetic:.3f} J, {potential:.4f} J"
+        '2.667 J, -4.9035 J'
+        """
+        lead, states = self._broadcast(t, q=q, qd=qd)
+        kinetic, potential = self._compiled.energy(*states)
+        return kinetic.reshape(lead), potential.reshape(lead)
+
+    def _broadcast(
+        self, t: npt.ArrayLike, **angles: npt.ArrayLike
+    ) -> tuple[tuple[int, ...], list[Floats]]:
+        """Return the leading shape of times and angles or rates, and each of them in rows."""
+        n = len(self.links)
+        units = {"q": "rad", "qd": "rad/s"}
         times = finite_array("t", t, "s")
-        q, qd = link_array("q", q, n, "rad"), link_array("qd", qd, n, "rad/s")
+        given = [link_array(name, one, n, units[name]) for name, one in angles.items()]
+        shapes = [times.shape, *(one.shape for one in given)]
         try:
-            lead = np.broadcast_shapes(times.shape, q.shape[:-1], qd.shape[:-1])
+            lead = np.broadcast_shapes(times.shape, *(one.shape[:-1] for one in given))
         except ValueError:
             raise ValueError(
-                f"t, q, qd: shapes {times.shape}, {q.shape}, {qd.shape}: must broadcast, the last "
-                "axis of q and qd aside"
+                f"{', '.join(['t', *angles])}: shapes {', '.join(map(str, shapes))}: must "
+                f"broadcast, the last axis of {' and '.join(angles)} aside"
             ) from None
-        return self._compiled.accelerations(
-            np.broadcast_to(times, lead).reshape(-1),
-            np.broadcast_to(q, (*lead, n)).reshape(-1, n),
-            np.broadcast_to(qd, (*lead, n)).reshape(-1, n),
-        ).reshape(*lead, n)
+        rows = [np.broadcast_to(one, (*lead, n)).reshape(-1, n) for one in given]
+        return lead, [np.broadcast_to(times, lead).reshape(-1), *rows]
+
+    def distances(self, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
+        """How far apart two motions are, as a share of the total length: the error of positions.
+
+        It is the largest distance between the places of the same joint, or of the tip, of the order
+        of 1 where the motions have nothing in common, and 0 for angles that differ by whole turns.
+        A driven pivot moves alike in both. A link of the length L adds to the distance, in the
+        complex plane and from the pivot outwards,
+
+            L (exp(i q) - exp(i r)) = 2 i L sin((q - r)/2) exp(i (q + r)/2),
+
+        whose right-hand side loses no digits where q and r are close.
+
+        Parameters
+        ----------
+        q, reference : array_like, (..., n)
+            Absolute angles, rad.
+
+        Returns
+        -------
+        ndarray, (...)
+            NaN where an angle is not finite.
+
+        Examples
+        --------
+        >>> float(pc.Scene.textbook().distances([0.0, 0.0], [0.0, np.pi]))  # the tip moves by 2 m
+        1.0
+        """
+        q, r = np.asarray(q, dtype=np.float64), np.asarray(reference, dtype=np.float64)
+        lengths = np.array([link.length for link in self.links])
+        lengths = lengths / lengths.sum()
+        place, apart = np.complex128(), np.float64()
+        with np.errstate(all="ignore"):
+            for i, length in enumerate(lengths):  # numpy is slow along an axis as short as a chain
+                chord = 2 * length * np.sin((q[..., i] - r[..., i]) / 2)
+                place = place + chord * np.exp(0.5j * (q[..., i] + r[..., i]))
+                apart = np.maximum(apart, np.abs(place))
+        return np.asarray(apart)
 
     def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
@@ -327,6 +420,30 @@ class Scene:
         start = None if q is None else vector("q", q, len(self.links), "rad")
         (time,) = vector("t", t, 1, "s")
         return explain(self, time, start)
+
+    def not_simulated(self) -> list[Absence]:
+        """Return the effects that the scene does not have, and physics that no effect models.
+
+        Examples
+        --------
+        >>> "payload" in [absence.kind for absence in pc.Scene.textbook().not_simulated()]
+        True
+        """
+        from pendcore._explanation.not_modelled import absent
+
+        return [*absent(self)]
+
+    def run_warnings(self, q0: npt.ArrayLike, t_span: Iterable[float]) -> list[str]:
+        """Return what `simulate` would warn of in a start (rad) and a span (s).
+
+        Examples
+        --------
+        >>> told = pc.Scene.textbook().run_warnings([45, 60], (0, 5))
+        >>> told[0][:44]
+        'q0[0] = 45.0 rad: that is 2578 degrees: angl'
+        """
+        angles = vector("q0", q0, len(self.links), "rad")
+        return self._compiled.run_warnings(angles, *time_span(t_span))
 
     def __repr__(self) -> str:
         effects = f", effects={self.effects!r}" if self.effects else ""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -48,6 +47,15 @@ class EnergyDrift(NamedTuple):
     too_large: bool
     changed_by: list[str]
     ledger: bool
+
+    def __str__(self) -> str:
+        if self.changed_by and not self.ledger:
+            return f"not known (changed by {_listed(self.changed_by)}): run with ledger=True"
+        size, share = self.largest_drift, self.relative_drift
+        of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
+        is_number = size is not None and np.isfinite(size)
+        told = f"{size:.1e} J{of_kinetic}" if is_number else "not a number"
+        return f"{told}; {TOO_LARGE}" if self.too_large else told
 
 
 def has_every_step(solution: Solution) -> bool:
@@ -111,25 +119,6 @@ def _lowest_potential(scene: Scene) -> float:
     _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())
-
-
-def text(drift: Mapping[str, Any]) -> str:
-    """Return drift and share for people, from the fields of an `EnergyDrift`.
-
-    What is not finite may have become None in JSON.
-    """
-    if is_untold(drift):
-        return f"not known (changed by {_listed(drift['changed_by'])}): run with ledger=True"
-    size, share = drift["largest_drift"], drift["relative_drift"]
-    if size is None or not np.isfinite(size):
-        return "not a number"
-    of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
-    return f"{size:.1e} J{of_kinetic}"
-
-
-def is_untold(drift: Mapping[str, Any]) -> bool:
-    """Return whether effects change the energy and no ledger tells by how much."""
-    return bool(drift["changed_by"]) and not drift["ledger"]
 
 
 def _listed(kinds: list[str]) -> str:

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Hashable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from pendcore._cases.case import Case, has_own_functions
-from pendcore._messages.progress import callback, close
 from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-ROWS_AT_ONCE = 10_000
-"""The number of rows of a CSV file between two reports of progress."""
 _HINT = "needs {0}: pip install {0}"
 
 
@@ -73,27 +66,6 @@ def to_xarray(solution: Solution) -> xr.Dataset:
         coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
         attrs=_case(solution),
     )
-
-
-def write_csv(solution: Solution, path: Path) -> None:
-    """Write a row per time: t (s), q_1.. (rad), qd_1.. (rad/s), every number with all its digits.
-
-    The first row names columns and units. A jump has two rows at one time.
-    """
-    links = range(1, len(solution.scene.links) + 1)
-    names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
-    rows = np.column_stack([solution.t, solution.q, solution.qd])
-    report = callback(None, f"writing {path.name}")
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(names)
-            for begin in range(0, len(rows), ROWS_AT_ONCE):
-                writer.writerows(rows[begin : begin + ROWS_AT_ONCE].tolist())
-                if report is not None:
-                    report(min(begin + ROWS_AT_ONCE, len(rows)) / len(rows))
-    finally:
-        close(report)
 
 
 def _case(solution: Solution) -> dict[Hashable, Any]:

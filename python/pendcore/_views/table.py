@@ -12,9 +12,9 @@ from pendcore._messages.arguments import Floats
 from pendcore._messages.html import beside, drawing, table
 from pendcore._run.curve import curve_of, span_of
 from pendcore._run.dense_output import with_dense_output
-from pendcore._run.methods import known_methods
+from pendcore._run.methods import evaluations
 from pendcore._run.solution import Solution
-from pendcore._views import energy_drift
+from pendcore._views.energy_drift import energy_drift
 
 _POSES = 6
 """The number of poses in a drawing of a run."""
@@ -89,17 +89,6 @@ def outcome(status: str, message: str) -> str:
     return message if message.startswith(f"{status}:") else f"{status}: {message}"
 
 
-def evaluations(method: str, last_method: str, nfev: int) -> str:
-    """Return the number of evaluations: series of Taylor's method, right-hand sides of others."""
-    known = known_methods()
-    first = known[method]["first"] or method
-    if not known[first]["dense_output_is_series"]:
-        return f"{nfev} right-hand sides"
-    if last_method != first:
-        return f"{nfev} series and right-hand sides"
-    return f"{nfev} series, each as long as many right-hand sides"
-
-
 def _rows(solution: Solution) -> list[tuple[str, str]]:
     n, t, stats = len(solution.scene.links), solution.t, solution.stats
     rows = [
@@ -117,10 +106,10 @@ def _rows(solution: Solution) -> list[tuple[str, str]]:
             ("last qd", f"{listed(solution.qd[-1])} rad/s"),
         ]
     every = -(-len(t) // _MANY) or 1
-    drift = energy_drift.energy_drift(solution, every)._asdict()
     of_some = f" (of one time in {every})" if every > 1 else ""
-    rows.append(("energy", "drift " + energy_drift.text(drift) + of_some))
-    rows += [("", energy_drift.TOO_LARGE)] * drift["too_large"]
+    drift, *trust = str(energy_drift(solution, every)).split("; ")
+    rows.append(("energy", f"drift {drift}{of_some}"))
+    rows += [("", told) for told in trust]
     return rows
 
 

@@ -6,9 +6,7 @@ from math import floor, isfinite, log10
 
 import numpy as np
 
-from pendcore._cases.case import Case
 from pendcore._run.solution import Solution
-from pendcore._views.energy_drift import EnergyDrift
 
 AMPLIFIED = 10.0
 """The ratio of a force's relative error to the tolerance, at most: errors of steps add up in a run,
@@ -16,23 +14,18 @@ as they have in its drift already."""
 FEWEST, MOST = 2, 6
 
 
-def trusted_digits(solution: Solution, drift: EnergyDrift, most: int = MOST) -> int:
+def trusted_digits(solution: Solution) -> int:
     """Return the number of digits, 2 to 6: by tolerance, energy drift and any verified error.
 
     It does not hold past the time to which a chaotic run is right: see `Solution.estimate_error`.
     """
-    asked, accuracy = solution._run.arguments, solution.accuracy
-    shares = [drift.relative_drift or 0.0]
-    if "step" not in Case.of_solution(solution).options:  # else tolerances set no step
+    asked, accuracy = solution.options, solution.accuracy
+    shares = [solution.energy_drift().relative_drift or 0.0]
+    if asked["step"] is None:  # else tolerances set no step
         shares.append(AMPLIFIED * float(np.max(asked["rtol"])))
     if accuracy is not None and accuracy.times:
         shares.append(accuracy.achieved)
     share = max(shares)
     if not isfinite(share):
         return FEWEST
-    return most if share == 0 else min(max(floor(-log10(share)), FEWEST), most)
-
-
-def rounded(value: float, digits: int) -> float:
-    """Return a number with the rest of its digits zero."""
-    return float(f"{value:.{digits - 1}e}")
+    return MOST if share == 0 else min(max(floor(-log10(share)), FEWEST), MOST)

@@ -9,8 +9,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any
 
-from pendcore import _core
-from pendcore._messages.warning import PendcoreWarning
+from pendcore import PendcoreWarning, build
 from pendcore.cli import completion, cost, derive, explain, map, plot, run, show, trust
 from pendcore.cli.surroundings import make_surroundings_safe
 from pendcore.cli.usage import NotWritten, UsageError
@@ -114,10 +113,10 @@ class _Version(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         try:
-            build = f"{_core.instruction_set()}, {_core.compiler}"
+            made = f"{build.instruction_set()}, {build.compiler}"
         except ValueError as error:
             parser.error(str(error))
-        print(f"pendcore {_core.__version__} ({build})")
+        print(f"pendcore {build.version} ({made})")
         parser.exit()
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from pendcore._api.files import read_case
-from pendcore._cases.case import Case
+from pendcore import Case, read_case
 
 
 def add_case_and_folder(parser: argparse.ArgumentParser) -> None:

@@ -6,9 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from pendcore._api.files import load_solution
-from pendcore._run.accuracy import AccuracyError
-from pendcore._run.solution import Solution
+from pendcore import AccuracyError, Solution, load
 from pendcore.cli.case_and_folder import case_of
 from pendcore.cli.usage import UsageError
 
@@ -22,6 +20,14 @@ def add_case_or_solution(parser: argparse.ArgumentParser) -> None:
         metavar="RUN.npz|CASE.toml",
         help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
     )
+
+
+def load_solution(path: Path) -> Solution:
+    """Read a solution; an ensemble is refused with a ValueError."""
+    found = load(path)
+    if not isinstance(found, Solution):
+        raise ValueError(f"{path}: is an ensemble, not a solution: pc.load() reads it, in Python")
+    return found
 
 
 def solution_of(args: argparse.Namespace) -> Solution:

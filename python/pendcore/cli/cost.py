@@ -7,13 +7,13 @@ import json
 import sys
 from typing import Any
 
-from pendcore._cases.case import Case
-from pendcore._run.options import OPTIONS, limits_of_every_method
+from pendcore import Case
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
+from pendcore.options import OPTIONS, limits_of_every_method
 
 _EPILOG = """
 what is written into the folder:

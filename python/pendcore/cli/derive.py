@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pendcore
-from pendcore._cases.case import Case
-from pendcore._cases.whole_file import whole_file
+from pendcore import Case
 from pendcore.cli.case_and_folder import case_of, folder_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
+from pendcore.messages import whole_file
 
 _EPILOG = """
 forms:

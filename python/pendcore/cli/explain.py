@@ -7,9 +7,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pendcore._messages.warning import warn
 from pendcore.cli.case_and_folder import case_of
 from pendcore.cli.usage import blamed_on_usage
+from pendcore.messages import warn
 
 _EPILOG = """
 what is told:
@@ -43,7 +43,7 @@ def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
-    for message in case.scene._compiled.run_warnings(case.q0, *case.t_span):
+    for message in case.scene.run_warnings(case.q0, case.t_span):
         warn(message)
     told = case.scene.explain(t=case.t_span[0], q=case.q0)
     print(json.dumps(told.to_dict(), indent=2) if args.json else told)

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pendcore._cases.whole_file import whole_file
 from pendcore.cli.usage import NotWritten, written
+from pendcore.messages import whole_file
 
 
 class FilesToWrite:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.solution import Solution
+from pendcore import ErrorEstimate, Solution
 
 LIMIT = 0.1
 """rad; a run counts as right until the error of an angle passes it."""
@@ -41,7 +40,7 @@ def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Hor
         return Horizon(until, f"until t = {until:.6g} s, and lost after that")
     if not estimate.is_complete:
         return Horizon(until, f"at least until t = {until:.6g} s", may_be_later=True)
-    if until == solution._run.t_reached:
+    if until == solution.t_reached:
         return Horizon(until, f"until its end, t = {until:.6g} s")
     return Horizon(until, f"until t = {until:.6g} s, the last time that was kept")
 

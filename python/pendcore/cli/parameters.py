@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from pendcore._cases.case import Case
-from pendcore._cases.case_file import KEYS
+from pendcore import Case
+from pendcore.case_files import KEYS
 from pendcore.cli.usage import UsageError
 from pendcore.cli.words import CHOSEN_FOR_ERROR, of_the_run
 

@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore._api.files import load_solution
-from pendcore._cases.whole_file import whole_file
-from pendcore._figures.plot import KINDS, save_figure
+from pendcore.cli.case_or_solution import load_solution
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import blamed_on_usage, written
+from pendcore.messages import whole_file
+from pendcore.plotting import KINDS, save_figure
 
 _EPILOG = """
 example:

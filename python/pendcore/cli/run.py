@@ -8,21 +8,17 @@ import re
 import sys
 from typing import Any
 
-from pendcore._cases.archive import save
-from pendcore._cases.case import Case
-from pendcore._cases.case_file import with_line
-from pendcore._figures.plot import save_figure
-from pendcore._run.accuracy import AccuracyError
-from pendcore._run.run_error import CAN_GO_ON, why_unverified
-from pendcore._run.solution import Solution
-from pendcore._views.export import write_csv
-from pendcore._views.summary import facts, text
+from pendcore import AccuracyError, Case, Solution
+from pendcore.case_files import with_line
 from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.parameters import with_parameters
+from pendcore.cli.summary import facts, text
+from pendcore.cli.table import write_csv
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cli.words import CHOSEN_FOR_ERROR
+from pendcore.plotting import save_figure
 
 _EPILOG = """
 what is written into the folder:
@@ -120,10 +116,10 @@ def execute(args: argparse.Namespace) -> int:
         print(files.outcome(), file=sys.stderr)
         if not solution.success:
             complaint = f"the run is not complete: {solution.message}"
-        complaint = complaint or why_unverified(solution)
+        complaint = complaint or _why_unverified(solution)
         if complaint:
             print(complaint, file=sys.stderr)
-        if solution.status in CAN_GO_ON and "solution.npz" not in files.left_out:
+        if solution.can_resume and "solution.npz" not in files.left_out:
             t_end = solution.case().t_span[1]
             file = str(folder / "solution.npz")
             print(f"to go on, in Python: pc.load({file!r}).resume({t_end!r})", file=sys.stderr)
@@ -149,6 +145,13 @@ def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str
         if isinstance(so_far := getattr(stop, "solution", None), Solution):
             return so_far, str(stop) or "interrupted", str(stop)
         raise
+
+
+def _why_unverified(solution: Solution) -> str:
+    told = solution.accuracy
+    if told is None or told.outcome != "ended early":
+        return ""
+    return f"the run is finished, but not verified: {told.verified_by}"
 
 
 def _options_of(args: argparse.Namespace) -> dict[str, Any]:
@@ -183,7 +186,7 @@ def _write(
     """Write small files first, the figure last; return the facts, if there was time for them."""
     found: dict[str, Any] = {}
     until = None if horizon is None else horizon.valid_until
-    if (steps := len(solution._run.step_starts)) > _MANY_STEPS:
+    if (steps := solution.stats.accepted) > _MANY_STEPS:
         print(f"writing {steps} steps to {files.folder}", file=sys.stderr)
     with files.needed_for("summary.txt", "summary.json"):
         found = facts(solution, refusal)
@@ -194,7 +197,7 @@ def _write(
         with files.one("summary.json") as path:
             path.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
     with files.needed_for("solution.npz"):
-        save(solution, files.folder / "solution.npz")
+        solution.save(files.folder / "solution.npz")
     if CSV in files.names:
         with files.one(CSV) as path:
             write_csv(solution, path)

@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from pendcore._cases.whole_file import whole_file
-from pendcore._figures.plot import save_figure
-from pendcore._run.solution import Solution
+from pendcore import Solution
 from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
+from pendcore.messages import whole_file
+from pendcore.plotting import save_figure
 
 _EPILOG = """
 examples:

@@ -7,7 +7,7 @@ import json
 from math import isfinite
 from typing import Any
 
-from pendcore._run.solution import Solution
+from pendcore import Solution
 from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
 from pendcore.cli.horizon import LIMIT, horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage

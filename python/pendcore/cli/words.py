@@ -6,9 +6,9 @@ import argparse
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pendcore._cases.case_file import KEYS
-from pendcore._messages.arguments import did_you_mean
-from pendcore._run.options import OPTIONS
+from pendcore.case_files import KEYS
+from pendcore.messages import did_you_mean
+from pendcore.options import OPTIONS
 
 CHOSEN_FOR_ERROR = tuple(name for name, one in OPTIONS.items() if one.chosen_for_error)
 """The options of a run that the command line takes too; an error that is asked for chooses all."""

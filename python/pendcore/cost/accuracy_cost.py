@@ -10,10 +10,9 @@ from math import inf, isfinite
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
-from pendcore._cases.whole_file import whole_file
-from pendcore._messages.arguments import number
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
+from pendcore.messages import number, whole_file
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D

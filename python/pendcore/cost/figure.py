@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from pendcore._figures.axes import as_drawn
-from pendcore._run.methods import line_style
 from pendcore.cost.point import Point
+from pendcore.methods import line_style
+from pendcore.plotting import as_drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

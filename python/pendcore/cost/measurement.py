@@ -8,21 +8,23 @@ from dataclasses import dataclass, field
 from math import inf
 from statistics import median
 from time import monotonic, perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore import _core
-from pendcore._api.simulate import simulate
-from pendcore._messages.arguments import Floats
-from pendcore._run.call import Choice, Start, run, supports
-from pendcore._run.methods import has_error_estimate, known_methods, pair_of
-from pendcore._run.solution import Solution
-from pendcore._scene.scene import Scene
+import pendcore as pc
+from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
+from pendcore.cost.runs import Start
+from pendcore.methods import has_error_estimate, known_methods, pair_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
 
 # A third of the time limit is for the reference and a third for single runs; the rest for repeats.
 SHARE = 1 / 3
@@ -30,7 +32,8 @@ PILOT_SHARE = 1 / 200
 """The share of a first loose run; if that takes longer, tight runs would not get to the end."""
 SHORTER = 0.6
 """The factor by which the span is cut again where the references did not get so far."""
-PILOT = Choice(pair_of("dopri5"), 1e-6, 1e-9)
+PILOT: dict[str, Any] = {"rtol": 1e-6, "atol": 1e-9, "store": "end"}
+"""A first loose run."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -70,7 +73,6 @@ class Contender:
 class Measurement:
     """A sweep; it can be interrupted at any time, and `result` returns what was measured so far."""
 
-    scene: Scene
     start: Start
     name: str
     methods: list[str] | None
@@ -92,12 +94,10 @@ class Measurement:
         """Make the whole measurement."""
         self.asked_t_span = (self.start.t_start, self.start.t_end)
         self.report(0.0)
-        pilot = run(
-            self.start, PILOT, store="end",
-            time_limit=max(PILOT_SHARE * self.time_limit, 1e-3), **self.limits,
-        )  # fmt: skip
+        limit = max(PILOT_SHARE * self.time_limit, 1e-3)
+        pilot = self.start.run(pair_of("dopri5"), **PILOT, time_limit=limit, **self.limits)
         if pilot.status == "time_limit":
-            self._cut(pilot._run.t_reached, self._too_little())
+            self._cut(pilot.t_reached, self._too_little())
         stiff = pilot.stats.stiff
         self._find_reference(stiff)
         self.report(0.2)
@@ -121,8 +121,8 @@ class Measurement:
             references=found.texts() if found else ("there is none yet", "neither"),
             timed=self._timed(tried) if found else "nothing was timed",
             remarks=tuple(self.remarks),
-            machine=f"{processor()}, instruction set {_core.instruction_set()}",
-            version=_core.__version__,
+            machine=f"{processor()}, instruction set {build.instruction_set()}",
+            version=build.version,
         )
 
     def _timed(self, tried: list[Point]) -> str:
@@ -260,9 +260,9 @@ class Measurement:
                 f"than {self.time_limit:.3g} s gives more"
             )
 
-    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[Solution, float]:
+    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[pc.Solution, float]:
         """Make the call that is timed."""
-        start, times = self.start, self._times()
+        start = self.start
         options = (
             {"rtol": one.rtol, "atol": one.atol, **self.limits}
             if one.step is None
@@ -270,8 +270,8 @@ class Measurement:
         )
         span = (start.t_start, start.t_end)
         begin = perf_counter()
-        solution = simulate(
-            self.scene, span, start.q0, start.qd0, method=one.method, t_eval=times,
+        solution = pc.simulate(
+            start.scene, span, start.q0, start.qd0, method=one.method, t_eval=self._times(),
             time_limit=time_limit, on_failure="ignore", progress=False, **options,
         )  # fmt: skip
         return solution, perf_counter() - begin
@@ -280,7 +280,7 @@ class Measurement:
         if self.methods is not None:
             return self.methods
         known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
-        return [name for name in known if supports(name, self.start, self._first_step(name))]
+        return [name for name in known if self.start.is_supported_by(name, self._first_step(name))]
 
     def _first_step(self, method: str) -> float | None:
         return None if has_error_estimate(method) else 1e-3
@@ -295,8 +295,10 @@ class Measurement:
 
     def _halved_steps(self) -> list[float]:
         """Return steps from twice those of a loose run on, halved down to a ten thousandth."""
-        loose = run(self.start, Choice("dopri5", 1e-3, 1e-6), store="end",
-                    time_limit=0.1 * self._left(), **self.limits)  # fmt: skip
+        loose = self.start.run(
+            "dopri5", rtol=1e-3, atol=1e-6, store="end", time_limit=0.1 * self._left(),
+            **self.limits,
+        )  # fmt: skip
         span = abs(self.start.t_end - self.start.t_start)
         longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
         return [float(longest / 2**k) for k in range(14)]

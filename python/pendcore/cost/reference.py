@@ -6,19 +6,20 @@ that are not above it cannot be told apart. A method is compared with the other 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pendcore._accuracy.method_choice import TIGHTEST, TIGHTEST_IMPLICIT
-from pendcore._accuracy.position_error import angles_at, distances, reached, time_grid
-from pendcore._messages.arguments import Floats
-from pendcore._run.call import Choice, Start, atol_beside, run, supports
-from pendcore._run.methods import implicit_method, methods_of, most_accurate, pair_of
-from pendcore._run.solution import Solution
+import pendcore as pc
+from pendcore.cost.runs import Start, atol_beside
+from pendcore.methods import implicit_method, methods_of, most_accurate, pair_of, tightest_rtol
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
 
 # In a stiff scene an implicit method comes first.
 REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
@@ -44,8 +45,8 @@ class TooFarError(ValueError):
 class Reference(NamedTuple):
     """Two runs, the times on which they are compared (n_t,), s, and how far apart they are."""
 
-    first: Solution
-    second: Solution
+    first: pc.Solution
+    second: pc.Solution
     times: Floats
     apart: Floats
 
@@ -54,14 +55,14 @@ class Reference(NamedTuple):
         """The largest distance of the two, as a share of the total length."""
         return float(self.apart.max())
 
-    def error_of(self, solution: Solution) -> float:
+    def error_of(self, solution: pc.Solution) -> float:
         """Return the largest distance of a run from the reference run by another method."""
         kin = methods_of(solution.method)
         other = self.second if self.first.method in kin else self.first
-        if not (solution.success and reached(solution, self.times[-1:]).all()):
+        if not (solution.success and len(solution.t) >= len(self.times)):
             return inf
-        q = angles_at(solution, self.times)
-        error = float(distances(solution.scene, q, other.q[: len(self.times)]).max())
+        q, r = (one.q[: len(self.times)] for one in (solution, other))
+        error = float(solution.scene.distances(q, r).max())
         return error if error == error else inf
 
     def first_times(self, count: int) -> Reference:
@@ -83,16 +84,20 @@ def reference(
     TooFarError
         If no two methods get beyond the first of the times; it says why.
     """
-    times = time_grid(start.t_start, start.t_end, points)
-    runs: list[Solution] = []
+    times = _grid(start.t_start, start.t_end, points)
+    runs: list[pc.Solution] = []
     until = monotonic() + time_limit
-    for choice in _choices(start, stiff):
+    for method in REFEREES_IF_STIFF if stiff else most_accurate():
+        if not start.is_supported_by(method):
+            continue
+        rtol = tightest_rtol(method)
         left = max(until - monotonic(), 1e-3) / 2
-        runs.append(run(start, choice, times, time_limit=left, **limits))
+        how = {"rtol": rtol, "atol": atol_beside(rtol), "compensated": True, "t_eval": times}
+        runs.append(start.run(method, **how, time_limit=left, **limits))
         whole = [made for made in runs if made.success]
         if len(whole) == 2:
             return _compared(whole, times)
-    farthest = sorted(runs, key=lambda made: abs(made._run.t_reached - start.t_end))[:2]
+    farthest = sorted(runs, key=lambda made: abs(made.t_reached - start.t_end))[:2]
     count = min(len(made.t) for made in farthest)
     if count < 2:
         second = farthest[-1]
@@ -100,7 +105,7 @@ def reference(
         raise TooFarError(
             f"no reference: within {time_limit:.3g} s no two methods got beyond the first of the "
             f"{points} times ({second.method}: {second.message}){remedy}",
-            second._run.t_reached,
+            second.t_reached,
         )
     return _compared(farthest, times[:count])
 
@@ -112,20 +117,20 @@ def known_until(found: Reference) -> int:
     return int(np.argmax(~(found.apart <= KNOWN)))
 
 
-def _choices(start: Start, stiff: bool) -> Iterator[Choice]:
-    for method in REFEREES_IF_STIFF if stiff else most_accurate():
-        if supports(method, start):
-            rtol = TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST
-            yield Choice(method, rtol, atol_beside(rtol), compensated=True)
+def _grid(t_start: float, t_end: float, points: int) -> Floats:
+    """Return evenly spaced times, s: both ends to the last bit, none twice."""
+    times = np.linspace(t_start, t_end, points)
+    times[-1] = t_end
+    distinct: Floats = times[np.append(True, np.diff(times) != 0)]
+    return distinct  # a span of a few last bits has fewer times than points
 
 
-def _compared(runs: list[Solution], times: Floats) -> Reference:
+def _compared(runs: list[pc.Solution], times: Floats) -> Reference:
     first, second = runs
     count = len(times)
-    apart = distances(first.scene, first.q[:count], second.q[:count])
+    apart = first.scene.distances(first.q[:count], second.q[:count])
     return Reference(first, second, times, np.where(np.isnan(apart), inf, apart))
 
 
-def _text(solution: Solution) -> str:
-    asked = solution._run.arguments
-    return f"{solution.method} at rtol {float(asked['rtol']):.0e}, compensated"
+def _text(solution: pc.Solution) -> str:
+    return f"{solution.method} at rtol {float(solution.options['rtol']):.0e}, compensated"

@@ -9,30 +9,35 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._accuracy.position_error import POINTS
-from pendcore._messages.arguments import (
+from pendcore import Scene
+from pendcore.cost.accuracy_cost import AccuracyCost
+from pendcore.cost.measurement import Measurement
+from pendcore.cost.runs import Start, atol_beside, forget_inner_runs
+from pendcore.messages import (
+    Progress,
+    callback,
+    close,
     finite_array,
     number,
+    require_scene,
+    silence,
     text,
     time_limit_of,
     time_span,
     vector,
+    warn,
     whole_number,
 )
-from pendcore._messages.progress import Progress, callback, close
-from pendcore._messages.warning import silence, warn
-from pendcore._run.call import Start, atol_beside, forget_inner_runs
-from pendcore._run.methods import methods_named
-from pendcore._run.options import limits_of_every_method, require_options, with_options
-from pendcore._scene.scene import Scene, require_scene
-from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.measurement import Measurement
+from pendcore.methods import methods_named
+from pendcore.options import limits_of_every_method, require_options, with_options
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""
 TIME_LIMIT = 20.0
 """s."""
 REPEATS = 30
+POINTS = 101
+"""The number of times at which errors are measured, both ends included."""
 
 
 @with_options(limits_of_every_method)
@@ -119,7 +124,6 @@ def accuracy_cost(
     tolerances = _positive("rtol", rtol, "", below=1.0)
     absolute = None if atol is None else number("atol", atol, "")
     measurement = Measurement(
-        scene=scene,
         start=start,
         name=text("name", name),
         methods=None if methods is None else methods_named(methods),
@@ -133,7 +137,7 @@ def accuracy_cost(
     report = callback(progress, "measuring")
     if report is not None:
         measurement.report = report
-    for message in scene._compiled.run_warnings(angles, start.t_start, start.t_end):
+    for message in scene.run_warnings(angles, span):
         warn(message)
     try:
         with silence():  # they were given above

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pendcore._figures.axes import figure_of_pyplot
-from pendcore._run.solution import Solution
+from pendcore import Solution
 from pendcore.films.stage import Choices, Stage
+from pendcore.plotting import figure_of_pyplot
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats, positive
-from pendcore._run.dense_output import with_dense_output
-from pendcore._run.solution import Solution
+from pendcore import Solution
+from pendcore.messages import positive
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
@@ -52,8 +57,8 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
     """Return the times of the frames, s: those of the longest run, at `speed` times true time."""
     rate = positive("fps", fps, "1/s")
     faster = positive("speed", speed, "")
-    starts = [float(one._run.arguments["t_start"]) for one in solutions]
-    ends = [one._run.t_reached for one in solutions]
+    starts = [one.t_span[0] for one in solutions]
+    ends = [one.t_reached for one in solutions]
     lengths = [end - start for start, end in zip(starts, ends, strict=True)]
     longest = int(np.argmax(np.abs(lengths)))
     start, length = starts[longest], lengths[longest]
@@ -70,20 +75,20 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
 
 def moves_of(solution: Solution, times: Floats) -> Moves:
     """Return where a run is at the times of frames; it stays where it ends."""
-    solution = with_dense_output(solution)
-    start, end = float(solution._run.arguments["t_start"]), solution._run.t_reached
+    solution = solution.with_dense_output()
+    start, end = solution.t_span[0], solution.t_reached
     at = np.clip(times, min(start, end), max(start, end))
-    states = solution._run.evaluate(at)
+    states = solution(at).T
     n = len(solution.scene.links)
     parts = _parts(at, states[:, n:])
     places = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
     along = np.interp(places, np.arange(len(at)), at)
-    compiled = solution.scene._compiled
+    scene = solution.scene
     return Moves(
         states,
-        compiled.positions(at, states[:, :n]),
-        compiled.reactions(at, states[:, :n], states[:, n:]),
-        compiled.positions(along, solution._run.evaluate(along)[:, :n])[:, -1],
+        scene.positions(at, states[:, :n]),
+        scene.reactions(at, states[:, :n], states[:, n:]),
+        scene.positions(along, solution(along)[:n].T)[:, -1],
         parts,
         float(sum(link.length for link in solution.scene.links)),
     )

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore._figures.axes import horizon_time, in_legend, in_plane
-from pendcore._figures.over_time import draw_energies
-from pendcore._messages.arguments import Floats, number, positive
-from pendcore._run.dense_output import with_dense_output
-from pendcore._run.solution import Solution
+from pendcore import Solution
 from pendcore.films.frames import Moves, frame_times, moves_of
+from pendcore.messages import number, positive
+from pendcore.plotting import draw_energies, horizon_time, in_legend, in_plane
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+
+    Floats = npt.NDArray[np.float64]
 
 _CHAINS = ("0.1", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:brown")
 _LOST = "0.72"
@@ -58,7 +59,7 @@ class Stage:
         self.figure = figure
         self.times = frame_times(solutions, choices.fps, choices.speed)
         self._players: list[_Player] = []
-        dense = [with_dense_output(one) for one in solutions]
+        dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
         scenes, strip = _layout(figure, len(solutions), choices)
         largest = max(float(np.hypot(*np.moveaxis(one.reactions, -1, 0)).max()) for one in moves)
@@ -190,7 +191,7 @@ def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> in
     if choices.horizon is not None:
         positive("horizon", choices.horizon, "rad")
     valid = horizon_time(solution, choices.horizon)
-    if valid is None or valid == solution._run.t_reached:
+    if valid is None or valid == solution.t_reached:
         return len(times)
     past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0
     return int(np.argmax(past)) - 1 if past.any() else len(times)
@@ -199,4 +200,4 @@ def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> in
 def _energy_strip(axis: Axes, solution: Solution) -> Line2D:
     """Draw the energies over time, and return the line that moves along."""
     draw_energies(solution, axis)
-    return axis.axvline(float(solution._run.arguments["t_start"]), color="0.2", linewidth=1.0)
+    return axis.axvline(solution.t_span[0], color="0.2", linewidth=1.0)

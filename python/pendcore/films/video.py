@@ -15,12 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore._cases.whole_file import whole_file
-from pendcore._messages.arguments import whole_number
-from pendcore._messages.progress import Progress, callback, close
-from pendcore._messages.warning import warn
-from pendcore._run.solution import Solution
+from pendcore import Solution
 from pendcore.films.stage import Choices, Stage
+from pendcore.messages import Progress, callback, close, warn, whole_file, whole_number
 
 if TYPE_CHECKING:
     from PIL.Image import Image

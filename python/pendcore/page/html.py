@@ -13,17 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from pendcore import _core
-from pendcore._accuracy.estimate import error_of
-from pendcore._cases.case import Case
-from pendcore._messages.arguments import text
-from pendcore._run.call import Choice, run, start_of
-from pendcore._run.dense_output import with_dense_output
-from pendcore._run.methods import known_methods
-from pendcore._run.options import OPTIONS
-from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import KINDS, PARTS
+from pendcore import Case, Solution, build, effects, simulate
 from pendcore.films.frames import moves_of
+from pendcore.messages import silence, text
+from pendcore.methods import known_methods
+from pendcore.options import OPTIONS
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
@@ -60,15 +54,15 @@ def page_of(solution: Solution, title: str | None = None) -> str:
 
     ``title`` is the headline; without one, the page has the name of the run.
     """
-    case = Case.of_solution(solution)
+    case = solution.case()
     scene = solution.scene
     own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
-    has_events = bool(solution._run.arguments["events"])
+    has_events = bool(solution.events_asked_for())
     core = None if own else core_for_browsers()
     told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
     data = {
         "case": _plain_case(case, solution),
-        "hash": "" if has_events else solution._run.fingerprint,
+        "hash": "" if has_events else solution.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
         "can_run": core is not None,
@@ -80,7 +74,7 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
         "recording": None if core is not None else _recording(solution),
-        "about": f"pendcore {_core.__version__}. {told}".strip(),
+        "about": f"pendcore {build.version}. {told}".strip(),
     }
     parts = {
         "TITLE": escape(text("title", title or "") or solution.name or "A pendulum"),
@@ -101,7 +95,7 @@ def _horizon(solution: Solution, *, may_take_long: bool) -> float | None:
         if not may_take_long:
             return None
         try:
-            estimate = error_of(solution, time_limit=_PATIENCE)
+            estimate = solution.estimate_error(time_limit=_PATIENCE)
         except ValueError:  # there is no second opinion on this run
             return None
     return estimate.valid_until(LIMIT)
@@ -125,7 +119,6 @@ def _bundle(names: tuple[str, ...]) -> str:
 
 def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
     """Return the case as plain data, named as in a case file, with every link in full."""
-    start = solution._run.arguments
     # The page knows no events: its run ends where one ended this run, before some times to keep.
     ended = solution.status == "event"
     left_out = {*LEFT_OUT, "t_eval", "store"} if ended else LEFT_OUT
@@ -142,23 +135,27 @@ def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
             for one in case.scene.effects
             if one.kind not in PYTHON_ONLY_KINDS
         ],
-        "start": {"q": start["q0"], "qd": start["qd0"]},
+        "start": {"q": case.q0, "qd": case.qd0},
         "run": {
             **options,
-            "t_start": start["t_start"],
-            "t_end": solution._run.t_reached if ended else start["t_end"],
-            "method": _method(solution),
-            "rtol": start["rtol"],
+            "t_start": case.t_span[0],
+            "t_end": solution.t_reached if ended else case.t_span[1],
+            "method": _method(case, solution),
+            "rtol": solution.options["rtol"],
         },
     }
 
 
-def _method(solution: Solution) -> str:
+def _method(case: Case, solution: Solution) -> str:
     """Return the method of a run, or "auto" where that takes the same: it goes on to do so."""
-    asked = solution._run.arguments
-    of_no_length = start_of(solution)._replace(t_end=asked["t_start"])
+    asked, begin = solution.options, case.t_span[0]
+    tolerances = {"rtol": asked["rtol"], "atol": asked["atol"]}
     try:
-        usual = run(of_no_length, Choice("auto", asked["rtol"], asked["atol"]), store="end").method
+        with silence():
+            of_no_length = simulate(
+                case.scene, (begin, begin), case.q0, case.qd0, store="end", **tolerances
+            )
+        usual = of_no_length.method
     except ValueError:
         usual = ""
     is_adaptive = asked["step"] is None and not asked["compensated"]
@@ -167,8 +164,8 @@ def _method(solution: Solution) -> str:
 
 def _descriptors() -> list[Any]:
     """Return what is known of effects and of their parts."""
-    kinds = [one.description for name, one in KINDS.items() if name not in PYTHON_ONLY_KINDS]
-    return [*kinds, *(one.description for one in PARTS.values())]
+    known: dict[str, Any] = {**effects.kinds(), **effects.parts()}
+    return [one.description for name, one in known.items() if name not in PYTHON_ONLY_KINDS]
 
 
 def _options() -> list[dict[str, Any]]:
@@ -187,10 +184,10 @@ def _options() -> list[dict[str, Any]]:
 @cache
 def _defaults() -> dict[str, Any]:
     """Return parameters of each kind of effect to begin with: those of its first example."""
-    classes = {one.__name__: one for one in (*KINDS.values(), *PARTS.values())}
+    classes = {one.__name__: one for one in (*effects.kinds().values(), *effects.parts().values())}
     return {
         kind: _parameters(eval(one.description.calls[0], dict(classes)))
-        for kind, one in KINDS.items()
+        for kind, one in effects.kinds().items()
         if kind not in PYTHON_ONLY_KINDS
     }
 
@@ -212,16 +209,16 @@ def _parameters(value: Any) -> dict[str, Any]:
 
 def _recording(solution: Solution) -> dict[str, Any]:
     """Return the run at equal steps of time, for a page that only plays back."""
-    solution = with_dense_output(solution)
-    begin, end = float(solution._run.arguments["t_start"]), solution._run.t_reached
+    solution = solution.with_dense_output()
+    begin, end = solution.t_span[0], solution.t_reached
     n = len(solution.scene.links)
-    rates = solution._run.evaluate(solution._run.step_starts)[:, n:]
+    rates = solution(solution.step_starts)[n:]
     fastest = float(np.abs(rates[np.isfinite(rates)]).max(initial=0.0))
     frames = abs(end - begin) * max(_FRAME_RATE, fastest / _FRAME_TURN)
     t = np.linspace(begin, end, round(min(max(frames, 2), _MOST_FRAMES)))
     moves = moves_of(solution, t)
     q, qd = moves.states[:, :n], moves.states[:, n:]
-    kinetic, potential = solution.scene._compiled.energy(t, q, qd)
+    kinetic, potential = solution.scene.energy(t, q, qd)
     return {
         "t": _rounded(t),
         "states": _rounded(moves.states),

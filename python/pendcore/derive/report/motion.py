@@ -11,8 +11,6 @@ from pendcore._cases.case import Case
 from pendcore._run.accuracy import AccuracyError
 from pendcore._run.energy import LOSSES
 from pendcore._run.solution import Solution
-from pendcore._views.energy_drift import energy_drift
-from pendcore._views.trusted_digits import rounded, trusted_digits
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.report.document import Block, Heading, Paragraph, Table
 from pendcore.derive.report.figures import Figures
@@ -142,7 +140,7 @@ def _table(derivation: Algebra, solution: Solution) -> Table:
 
 
 def _largest(derivation: Algebra, solution: Solution) -> str:
-    digits = trusted_digits(solution, energy_drift(solution), DIGITS_OF_A_FORCE)
+    digits = min(solution.trusted_digits(), DIGITS_OF_A_FORCE)
     sentences = []
     for one in solution.largest_reactions():
         i = one.joint - 1
@@ -150,7 +148,7 @@ def _largest(derivation: Algebra, solution: Solution) -> str:
         bold = rf"|\mathbf{{F}}{name[1:]}|"
         before = "just before" if one.just_before else "at"
         when = "throughout" if one.steady else f"{before} $t = {quantity(one.t, 's', 4)}$"
-        force = quantity(rounded(one.force, digits), "N", DIGITS_OF_A_FORCE)
+        force = quantity(float(f"{one.force:.{digits - 1}e}"), "N", DIGITS_OF_A_FORCE)
         sentences.append(f"${bold} = {force}$ {when}")
     among = "" if solution.store == "dense" else f" among the {len(solution.t)} kept times"
     return f"The largest reactions{among} are {', '.join(sentences)}."
@@ -176,7 +174,7 @@ def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> I
 
 
 def _kept(derivation: Algebra, solution: Solution) -> str:
-    drift, measure = energy_drift(solution), Scales(derivation).of["J"]
+    drift, measure = solution.energy_drift(), Scales(derivation).of["J"]
     words = f"In the run, $T + V$ is ${quantity(drift.start, 'J')}$ at the start"
     if drift.largest_drift is None:
         return words + "."

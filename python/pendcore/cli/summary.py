@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from math import degrees, isfinite
 from textwrap import wrap
@@ -10,15 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from pendcore import _core
-from pendcore._cases.case import Case
-from pendcore._explanation.not_modelled import absent
-from pendcore._run.accuracy import Accuracy
-from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import Effect, Part
-from pendcore._views import energy_drift
-from pendcore._views.table import evaluations, listed, outcome
-from pendcore._views.trusted_digits import rounded, trusted_digits
+from pendcore import Accuracy, Case, Solution, build
+from pendcore.effects import Effect, Part
+from pendcore.methods import evaluations
 
 _MANY = 12
 """The number of links up to which a table for people has a row for each."""
@@ -29,9 +23,9 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
 
     ``refusal`` is what an `AccuracyError` said, if the run comes from one.
     """
-    case, run = Case.of_solution(solution), solution._run
+    case, end = solution.case(), solution.y_reached
     n = len(case.scene.links)
-    drift = energy_drift.energy_drift(solution)
+    drift, keeps_steps = solution.energy_drift(), solution.store in ("dense", "steps")
     found = {
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
@@ -39,27 +33,27 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "effects": [_effect(effect) for effect in case.scene.effects],
         "mobility": case.scene.mobility()._asdict(),
         "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
-        "run": {"t_end": case.t_span[1]} | _run_options(solution),
+        "run": {"t_end": case.t_span[1]} | _run_options(case, solution),
         "events": _events(solution),
         "status": solution.status,
         "message": solution.message,
-        "last_method": solution._run.last_method,
+        "last_method": solution.last_method,
         "success": solution.success,
         "refusal": refusal or None,
-        "end": {"t": run.t_reached, "q": run.y_reached[:n], "qd": run.y_reached[n:]},
+        "end": {"t": solution.t_reached, "q": end[:n], "qd": end[n:]},
         "statistics": solution.stats._asdict(),
         "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
-        "energy": drift._asdict(),
+        "energy": drift._asdict() | {"sentence": str(drift)},
         "ledger": _ledger(solution),
         "kept": {
             "times": len(solution.t),
-            "every_step": energy_drift.has_every_step(solution),
+            "every_step": keeps_steps and solution.options["t_eval"] is None,
             "between_steps": solution.store == "dense",
         },
         "largest_reactions": [one._asdict() for one in solution.largest_reactions()],
-        "trusted_digits": trusted_digits(solution, drift),
-        "not_simulated": [absence._asdict() for absence in absent(case.scene)],
-        "version": _core.__version__,
+        "trusted_digits": solution.trusted_digits(),
+        "not_simulated": [absence._asdict() for absence in case.scene.not_simulated()],
+        "version": build.version,
     }
     return _json(found)  # type: ignore[no-any-return]
 
@@ -99,10 +93,9 @@ def _ledger(solution: Solution) -> dict[str, float] | None:
     return {name: float(entry[-1]) for name, entry in ledger.items()}
 
 
-def _run_options(solution: Solution) -> dict[str, Any]:
-    asked = solution._run.arguments
-    always = {key: asked[key] for key in ("method", "rtol", "atol")}
-    options = always | dict(Case.of_solution(solution).options)
+def _run_options(case: Case, solution: Solution) -> dict[str, Any]:
+    always = {key: solution.options[key] for key in ("method", "rtol", "atol")}
+    options = always | dict(case.options)
     options.pop("events", None)
     if "step" in options:  # a fixed step takes the place of the tolerances
         del options["rtol"], options["atol"]
@@ -137,7 +130,7 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     stats, end, energy = found["statistics"], found["end"], found["energy"]
-    yield "status", outcome(found["status"], found["message"])
+    yield "status", f"{found['status']}: {found['message'].removeprefix(found['status'] + ': ')}"
     if found["refusal"] is not None:
         yield "refused", found["refusal"]
     yield "end", f"t = {end['t']:.6g} s, {_state(end)}"
@@ -151,11 +144,10 @@ def _happened(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "accuracy", str(Accuracy.from_dict(found["accuracy"]))
     if found.get("horizon") is not None:
         yield "right to 0.1 rad", found["horizon"]
-    yield "energy drift", energy_drift.text(energy)
+    for i, told in enumerate(energy["sentence"].split("; ")):
+        yield "" if i else "energy drift", told
     for i, (name, value) in enumerate((found["ledger"] or {}).items()):
         yield "" if i else "ledger", f"{name} {value:.6g} J"
-    if energy["too_large"]:
-        yield "", energy_drift.TOO_LARGE
     yield from _largest_reactions(found)
 
 
@@ -164,7 +156,8 @@ def _largest_reactions(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     for one in largest[:_MANY]:
         force = "beyond the range of doubles"
         if one["force"] is not None:
-            force = f"{rounded(one['force'], found['trusted_digits']):.6g} N"
+            trusted = float(f"{one['force']:.{found['trusted_digits'] - 1}e}")
+            force = f"{trusted:.6g} N"
         when = "just before t" if one["just_before"] else "at t"
         when = "throughout" if one["steady"] else f"{when} = {one['t']:.6g} s"
         name = "largest reaction" if one["joint"] == 1 else ""
@@ -174,6 +167,12 @@ def _largest_reactions(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if not kept["between_steps"]:
         times = kept["times"]
         yield "" if times else "largest reaction", f"among the {times} kept time{'s'[: times != 1]}"
+
+
+def listed(values: Sequence[float], most: int = 6) -> str:
+    """Return numbers as people read them: six digits, and dots in place of the last of many."""
+    some = [f"{x:.6g}" for x in values[:most]]
+    return ", ".join([*some, "..."] if len(values) > most else some)
 
 
 def _state(at: dict[str, Any], in_degrees: bool = False) -> str:

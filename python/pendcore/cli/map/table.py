@@ -18,9 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pendcore._cases.case_file import text_of
-from pendcore._cases.toml_text import TomlText
-from pendcore._messages.arguments import Floats
+from pendcore.case_files import TomlText, text_of
+from pendcore.cli.map.refinement import Floats
 
 KEYS = {"map": ("show", "x", "y")}
 AXIS_KEYS = ("name", "start", "stop", "count")

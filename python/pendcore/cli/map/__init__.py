@@ -11,18 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from pendcore._api.ensemble import ensemble
-from pendcore._api.files import read_case
-from pendcore._cases.case import Case
-from pendcore._cases.map_table import MapAxis, MapTable, read_map_table
-from pendcore._ensemble.figure import Axis, Shown, draw_map, is_wide, new_axes
-from pendcore._ensemble.forbidden import is_forbidden
-from pendcore._ensemble.members import members_of
-from pendcore._ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
-from pendcore._ensemble.refinement import Mask, levels_of, refined
-from pendcore._messages.arguments import Floats
+from pendcore import Case, ensemble, read_case
 from pendcore.cli.files_to_write import FilesToWrite
+from pendcore.cli.map.forbidden import is_forbidden
+from pendcore.cli.map.refinement import Floats, Mask, levels_of, refined
+from pendcore.cli.map.table import MapAxis, MapTable, read_map_table
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
+from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
 
 _EPILOG = """
 the case has a table
@@ -204,8 +200,8 @@ def _run(
     options = {name: value for name, value in case.options.items() if name in _OPTIONS}
     values, resolved = np.full(len(x), np.nan), np.ones(len(x), dtype=bool)
     wanted = np.ones(len(x), dtype=bool)
-    if isinstance(reducer, FirstEvent):
-        wanted = ~is_forbidden(members_of(case.scene, q0, qd0, vary), reducer.event)
+    if isinstance(reducer, FirstEvent) and not vary:
+        wanted = ~is_forbidden(case.scene, q0, qd0, reducer.event)
         pixels.forbidden += int(np.count_nonzero(~wanted))
     vary = {name: one[wanted] for name, one in vary.items()}
     found = ensemble(

@@ -14,15 +14,21 @@ from time import monotonic, perf_counter
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._accuracy.estimate import error_estimate
-from pendcore._horizon.horizon_work import HorizonPoint, HorizonWork
-from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
-from pendcore._messages.arguments import numbers, positive, time_limit_of, time_span
-from pendcore._messages.progress import Progress, callback, close
-from pendcore._run.call import Choice, Start, atol_beside, forget_inner_runs, run, supports
-from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.methods import has_error_estimate, known_methods, methods_named
-from pendcore._scene.scene import Scene, require_scene
+from pendcore import ErrorEstimate, LyapunovExponents, Scene, lyapunov
+from pendcore.cost.horizon_work import HorizonPoint, HorizonWork
+from pendcore.cost.runs import Start, atol_beside, forget_inner_runs
+from pendcore.messages import (
+    Progress,
+    callback,
+    close,
+    numbers,
+    positive,
+    require_scene,
+    silence,
+    time_limit_of,
+    time_span,
+)
+from pendcore.methods import has_error_estimate, known_methods, methods_named
 
 METHODS = ("dopri5", "dop853", "taylor")
 """The methods that are tried by default, where they support the scene."""
@@ -85,23 +91,23 @@ def horizon_work(
     """
     require_scene(scene)
     start = Start(scene, q0, qd0, *time_span(t_span))
-    _check_start(start, "dopri5")
+    start.check("dopri5")
     limit = positive("limit", limit, "rad")
     names = _methods(methods, start)
     tolerances = numbers("rtols", rtols, "")
     if not tolerances or not all(0 < rtol < 1 for rtol in tolerances):
         raise ValueError(f"rtols = {rtols!r}: must hold a tolerance, and each be > 0 and < 1")
-    choices = [Choice(method, r, atol_beside(r)) for method in names for r in tolerances]
+    choices = [(method, rtol) for method in names for rtol in tolerances]
     until = monotonic() + time_limit_of(time_limit)
     report = callback(progress, "measuring")
     found: list[tuple[ErrorEstimate, HorizonPoint]] = []
     try:
-        for done, choice in enumerate(choices):
+        for done, (method, tolerance) in enumerate(choices):
             if monotonic() > until:
                 break
             if report is not None:
                 report(done / len(choices))
-            found.append(_point(start, choice, limit))
+            found.append(_point(start, method, tolerance, limit))
         work = _work(start, limit, choices, found)
         try:
             return replace(work, growth=_growth(start, work))
@@ -115,15 +121,10 @@ def horizon_work(
         close(report)
 
 
-def _check_start(start: Start, method: str) -> None:
-    """Run for no time at all, which raises what is wrong with the start or the method."""
-    run(start._replace(t_end=start.t_start), Choice(method, 1e-6, 1e-9), store="end")
-
-
 def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
     """Return the names of the methods to try, without aliases and each once."""
     if given is None:
-        return [method for method in METHODS if supports(method, start)]
+        return [method for method in METHODS if start.is_supported_by(method)]
     names = methods_named(given)
     for method in names:
         if not has_error_estimate(method):
@@ -132,28 +133,30 @@ def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:
                 f"methods: {method!r} takes fixed steps and has no tolerance to vary: must be of "
                 f"{', '.join(known)}; pendcore.accuracy_cost measures it too"
             )
-        _check_start(start, method)
+        start.check(method)
     return names
 
 
-def _point(start: Start, choice: Choice, limit: float) -> tuple[ErrorEstimate, HorizonPoint]:
-    error = error_estimate(run(start, choice), progress=False)
+def _point(
+    start: Start, method: str, rtol: float, limit: float
+) -> tuple[ErrorEstimate, HorizonPoint]:
+    tolerances = {"rtol": rtol, "atol": atol_beside(rtol)}
+    error = start.run(method, **tolerances).estimate_error(progress=False)
     valid = error.valid_until(limit)
     so_far = start._replace(t_end=valid)
     seconds, nfev = inf, 0
     for _ in range(REPEATS):
         began = perf_counter()
-        made = run(so_far, choice, store="end")
+        made = so_far.run(method, **tolerances, store="end")
         seconds = min(seconds, perf_counter() - began)
         nfev = made.stats.nfev
-    rtol, horizon = float(np.min(choice.rtol)), abs(valid - start.t_start)
-    return error, HorizonPoint(choice.method, rtol, horizon, seconds, nfev, nan)
+    return error, HorizonPoint(method, rtol, abs(valid - start.t_start), seconds, nfev, nan)
 
 
 def _work(
     start: Start,
     limit: float,
-    choices: list[Choice],
+    choices: list[tuple[str, float]],
     found: list[tuple[ErrorEstimate, HorizonPoint]],
 ) -> HorizonWork:
     """Return the result without its exponent, which is computed from it."""
@@ -162,10 +165,9 @@ def _work(
         point._replace(early=float(error.angle[np.abs(error.t - start.t_start) <= early].max()))
         for error, point in found
     ]
-    untried = tuple((one.method, float(np.min(one.rtol))) for one in choices[len(found) :])
     return HorizonWork(
         limit=limit, t_span=(start.t_start, start.t_end), points=tuple(points), early=early,
-        growth=None, untried=untried,
+        growth=None, untried=tuple(choices[len(found) :]),
     )  # fmt: skip
 
 
@@ -175,7 +177,8 @@ def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
     if not longest > work.early:
         return None
     end = start.t_start + np.copysign(longest, start.t_end - start.t_start)
-    return lyapunov(
-        start.scene, (start.t_start, end), start.q0, start.qd0, count=1, transient=work.early,
-        rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
-    )  # fmt: skip
+    with silence():
+        return lyapunov(
+            start.scene, (start.t_start, end), start.q0, start.qd0, count=1, transient=work.early,
+            rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,
+        )  # fmt: skip

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._messages.arguments import Floats
-
+Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 DIFFERS = 0.05

@@ -15,22 +15,23 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._ensemble.members import Members
-from pendcore._run.events import Event, LinkAngle
+from pendcore import Scene
+from pendcore.events import Event, LinkAngle
 
 MARGIN = 1e-9
 """The share of the energies that must be missing: rounding makes nothing impossible."""
 
 
-def is_forbidden(members: Members, event: Event) -> npt.NDArray[np.bool_]:
-    """Return at which members the event is known not to happen, (...).
+def is_forbidden(
+    scene: Scene, q0: npt.ArrayLike, qd0: npt.ArrayLike, event: Event
+) -> npt.NDArray[np.bool_]:
+    """Return at which starts (..., n) the event is known not to happen, (...).
 
-    Nothing is known of scenes with effects or varied parameters, and of other events.
+    Nothing is known of scenes with effects, and of other events.
     """
-    scene = members.scene
-    unknown = np.zeros(members.shape, dtype=bool)
-    if scene.effects or members.vary or not isinstance(event, LinkAngle):
-        return unknown
+    kinetic, potential = scene.energy(0.0, q0, np.broadcast_to(qd0, np.shape(q0)))
+    if scene.effects or not isinstance(event, LinkAngle):
+        return np.zeros(kinetic.shape, dtype=bool)
     mass = np.array([link.mass for link in scene.links])
     length = np.array([link.length for link in scene.links])
     beyond = np.cumsum(mass[::-1])[::-1] - mass
@@ -39,10 +40,6 @@ def is_forbidden(members: Members, event: Event) -> npt.NDArray[np.bool_]:
     )
     i = event.link - 1
     least = -np.abs(weights).sum() + abs(weights[i]) - weights[i] * np.sin(event.value)
-    n = len(scene.links)
-    q, qd = members.q0.reshape(-1, n), members.qd0.reshape(-1, n)
-    kinetic, potential = scene._compiled.energy(np.zeros(len(q)), q, qd)
-    missing = least - (kinetic + potential)
     scale = np.abs(kinetic) + np.abs(potential) + np.abs(weights).sum()
-    found: npt.NDArray[np.bool_] = missing > MARGIN * scale
-    return found.reshape(members.shape)
+    found: npt.NDArray[np.bool_] = least - (kinetic + potential) > MARGIN * scale
+    return found

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from pendcore._horizon.lyapunov import LyapunovExponents
-from pendcore._run.methods import line_style
+from pendcore import LyapunovExponents
+from pendcore.methods import line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

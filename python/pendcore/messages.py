@@ -1,0 +1,46 @@
+"""How pendcore speaks, for extras that are to speak alike: warnings, bars, checks, whole files.
+
+An argument that is wrong is answered with its name, its value, its range and its unit; a file is
+there whole or not at all. The derivation, pages, films, the command line and comparisons of cost
+stand on these and on the rest of the public names alone.
+"""
+
+from __future__ import annotations
+
+from pendcore._cases.whole_file import whole_file
+from pendcore._messages.arguments import (
+    did_you_mean,
+    finite_array,
+    number,
+    numbers,
+    positive,
+    text,
+    time_limit_of,
+    time_span,
+    vector,
+    whole_number,
+)
+from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.warning import PendcoreWarning, silence, warn
+from pendcore._scene.scene import require_scene
+
+__all__ = [
+    "PendcoreWarning",
+    "Progress",
+    "callback",
+    "close",
+    "did_you_mean",
+    "finite_array",
+    "number",
+    "numbers",
+    "positive",
+    "require_scene",
+    "silence",
+    "text",
+    "time_limit_of",
+    "time_span",
+    "vector",
+    "warn",
+    "whole_file",
+    "whole_number",
+]

@@ -1,0 +1,47 @@
+"""Extras import `pendcore` as a user would: with everything private hidden they are whole."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+EXTRAS = ["films", "page", "cost", "cli"]
+PROGRAM = """
+import importlib, pkgutil, sys
+import pendcore
+for found in pkgutil.iter_modules(pendcore.__path__):
+    if not found.ispkg and not found.name.startswith("_"):
+        importlib.import_module(f"pendcore.{found.name}")  # a name that users import
+
+class Hidden:
+    def find_spec(self, name, *_):
+        if name.startswith("pendcore._"):
+            raise ImportError(f"{name} is private")
+
+for name in [name for name in sys.modules if name.startswith("pendcore._")]:
+    del sys.modules[name]
+    vars(pendcore).pop(name.split(".")[1], None)
+sys.meta_path.insert(0, Hidden())
+for name in sys.argv[1:]:
+    package = importlib.import_module(f"pendcore.{name}")
+    for found in pkgutil.walk_packages(package.__path__, f"pendcore.{name}."):
+        importlib.import_module(found.name)
+"""
+
+
+def imported(*names: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, *names], capture_output=True, text=True, check=False
+    )
+    return done.stderr
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_an_extra_stands_on_public_names_alone(extra: str) -> None:
+    assert imported(extra) == ""
+
+
+def test_what_imports_a_private_name_is_seen() -> None:
+    assert "pendcore._figures is private" in imported("_figures")
