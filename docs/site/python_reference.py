@@ -8,7 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import pendcore
-from pendcore import effects, events, reducers, sampling
+from pendcore import (
+    build,
+    case_files,
+    effects,
+    events,
+    messages,
+    methods,
+    options,
+    plotting,
+    reducers,
+    sampling,
+)
 
 GROUPS = {
     "Scenes": ["Scene", "Link", "Mobility", "Explanation"],
@@ -22,6 +33,21 @@ GROUPS = {
     "Cases and files": ["Case", "read_case", "load"],
     "Angles": ["angles_from_vertical", "angles_to_vertical"],
 }  # fmt: skip
+
+
+EXTENDED_BY = {
+    "Methods": methods,
+    "Options of a run": options,
+    "Figures": plotting,
+    "For extras: messages, checks, files": messages,
+    "For extras: case files": case_files,
+    "This build": build,
+}
+"""Modules for those who build on pendcore."""
+
+
+def callables(module: Any) -> list[str]:
+    return [name for name in module.__all__ if callable(getattr(module, name))]
 
 
 def public_names() -> set[str]:
@@ -42,6 +68,10 @@ def write(folder: Path) -> None:
         ("Events", "pendcore.events", events, list(events.__all__)),
         ("What ensembles keep", "pendcore.reducers", reducers, list(reducers.__all__)),
         ("Random starts", "pendcore.sampling", sampling, list(sampling.__all__)),
+        *(
+            (title, module.__name__, module, callables(module))
+            for title, module in EXTENDED_BY.items()
+        ),
     ]
     index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
     hidden = []

@@ -271,9 +271,9 @@ class Scene:
 
         Examples
         --------
-        >>> pc.Scene.textbook().reactions(0.0, [np.pi / 2, np.pi / 2], [0.0, 0.0]).round(3)
-        array([[  0.   , -19.614],
-               [  0.   ,  -9.807]])
+        >>> hanging = pc.Scene.textbook().reactions(0.0, [np.pi / 2, np.pi / 2], [0.0, 0.0])
+        >>> hanging[:, 1].round(3)  # upwards, and y points down
+        array([-19.614,  -9.807])
         """
         lead, states = self._broadcast(t, q=q, qd=qd)
         return self._compiled.reactions(*states).reshape(*lead, len(self.links), 2)
