@@ -7,8 +7,8 @@
 namespace pendcore::bindings {
 namespace {
 
-DefectCorrection with_neighbours(const py::list& neighbours, int parts) {
-  DefectCorrection correction(parts);
+DefectCorrection with_neighbours(const py::list& neighbours) {
+  DefectCorrection correction;
   for (const py::handle one : neighbours) {
     const auto [scene, q0, points] =
         one.cast<std::tuple<py::object, py::object, std::vector<int>>>();
@@ -29,7 +29,7 @@ py::array errors_of(const DefectCorrection& correction) {
 
 void bind_defect_correction(py::module_& module) {
   py::class_<DefectCorrection>(module, "DefectCorrection")
-      .def(py::init(&with_neighbours), py::arg("neighbours"), py::arg("parts"))
+      .def(py::init(&with_neighbours), py::arg("neighbours"))
       .def_property_readonly(
           "t", [](const DefectCorrection& correction) { return copy(correction.t()); })
       .def_property_readonly("errors", &errors_of)

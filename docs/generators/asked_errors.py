@@ -22,9 +22,10 @@ from time import perf_counter
 from typing import Any, TypeAlias
 
 import numpy as np
-from pendcore._accuracy.defect_correction import Way, correction_along
-from pendcore._accuracy.target_error import kept_run
-from pendcore._accuracy.trials import TrialRun, Trials
+import pendcore as pc
+from pendcore._accuracy.strategies import strategies
+from pendcore._accuracy.target_error import search
+from pendcore._accuracy.trials import Strategy, TrialRun, Trials
 from pendcore._run.call import Choice, Start, atol_beside, run, start_of
 from pendcore._run.options import OPTIONS
 
@@ -79,8 +80,10 @@ def times(one: Regular) -> dict[str, float]:
     """Time the best run of the sweep, the run that was chosen, the same verified, and the call."""
     scene, q0, qd0, span = one.arguments
     start = Start(scene, q0, qd0, *span)
-    runs = Trials(start, one.error, OPTIONS_OF_TRIALS | {"t_eval": one.times}, None)
-    solution = kept_run(runs)
+    options = OPTIONS_OF_TRIALS | {"t_eval": one.times}
+    runs = Trials(start, one.error, options, None, strategies(start, one.error))
+    solution = search(runs)
+    assert isinstance(solution, pc.Solution)
     chosen = next(made for made in runs.paid if made.solution is solution)
     timed: dict[str, Timed] = {
         f"best {method}": partial(run, start, Choice(method, rtol, atol_beside(rtol)), one.times)
@@ -88,9 +91,9 @@ def times(one: Regular) -> dict[str, float]:
     }
     best = [*timed]
     timed["run"] = again(chosen)
-    if chosen.correction is not None and runs.error_from_defect(chosen) is solution.known_error:
+    if runs.strategy.verify(runs, chosen) is solution.known_error and runs.strategy.method:
         verified = ["verified"]
-        timed["verified"] = with_correction(again(chosen), start, runs.ways[0], chosen.scale)
+        timed["verified"] = with_correction(again(chosen), start, runs.strategy, chosen.scale)
     else:
         seconds = {f"second {i}": again(made) for i, made in enumerate(runs.seconds)}
         timed |= seconds
@@ -124,8 +127,8 @@ def again(made: TrialRun) -> Timed:
     )
 
 
-def with_correction(made: Timed, start: Start, way: Way, scale: float) -> Timed:
-    return lambda: made(correction=correction_along(start, way, scale))
+def with_correction(made: Timed, start: Start, strategy: Strategy, scale: float) -> Timed:
+    return lambda: made(correction=strategy.correction(start, scale))
 
 
 def least_times(timed: dict[str, Timed]) -> dict[str, float]:

@@ -18,7 +18,7 @@ from time import perf_counter
 from typing import Any
 
 import pendcore as pc
-from pendcore._accuracy.defect_correction import SERIES_8_7, correction_along
+from pendcore._accuracy.strategies import FROM_DEFECT
 from pendcore._core import DefectCorrection, has_defect_correction
 from pendcore._run.call import Choice, Start, atol_beside, run
 from pendcore._run.work import correction_work, series_work
@@ -56,7 +56,7 @@ SECONDS = 20.0
 """s of motion: so many that the call itself takes no part in the time."""
 YARDSTICK = ("dop853", 1e-9)
 WAYS = (("taylor", 1e-4), ("taylor", 1e-8), ("taylor", 1e-12))
-CORRECTED = (WAYS[1], SERIES_8_7)
+CORRECTED = (WAYS[1], FROM_DEFECT[-1])
 ROUNDS = 15
 WITHIN = 2.0
 
@@ -80,7 +80,7 @@ def measured_over_forecast(scene: pc.Scene) -> list[float]:
             seconds, nfev = timed(start, way)
             one[way] = min(one[way], seconds / nfev)
         if is_corrected:
-            correction = correction_along(start, CORRECTED[1], 1.0)
+            correction = CORRECTED[1].correction(start, 1.0)
             seconds, nfev = timed(start, CORRECTED[0], correction)
             whole = min(whole, (seconds - nfev * one[CORRECTED[0]]) / correction.nfev)
     ratios = [one[way] / series_work(scene, way[1]) for way in WAYS]

@@ -127,7 +127,7 @@ def simulate(
 
 class DefectCorrection:
     def __init__(
-        self, neighbours: Sequence[tuple[Scene, npt.ArrayLike, Sequence[int]]], parts: int
+        self, neighbours: Sequence[tuple[Scene, npt.ArrayLike, Sequence[int]]]
     ) -> None: ...
     @property
     def t(self) -> npt.NDArray[np.float64]: ...

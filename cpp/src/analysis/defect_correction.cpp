@@ -15,29 +15,28 @@ namespace pendcore {
 namespace {
 
 constexpr double lost_share = 0.2;  ///< of the total length
-constexpr int divisions = 6;        ///< of a part, at which a dense run's errors are kept
+constexpr int divisions = 6;        ///< of a step, at which a dense run's errors are kept
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
 bool has_defect_correction(const Scene& scene) { return !laws_may_change(scene); }
 
-/// A part of a step, from one theta of its curve on.
-struct DefectCorrection::Part {
-  double from, size;  ///< in theta
-  double t_start, t;  ///< s, where the part begins, and where it ends
+/// A step, or what of it there is before an event.
+struct DefectCorrection::Step {
+  double t_start, t;  ///< s, where it begins, and where it ends
   double h;           ///< s
-  bool ends_the_step;
+  double size;        ///< in theta
 };
 
-/// A neighbour of the run: its error now, and in the last part of a step.
+/// A neighbour of the run: its error now, and in the last step.
 struct DefectCorrection::Neighbour {
   Neighbour(const Scene& scene, std::shared_ptr<const EquationsOfMotion> of_scene,
             std::vector<double> angles, const LobattoPoints& its_points)
       : equations(std::move(of_scene)),
         qdd_of(right_hand_side(*equations)),
         points(its_points),
-        begin_part(defect_kernels().begin_part(its_points.count)),
+        begin_step(defect_kernels().begin_step(its_points.count)),
         advance_to_point(defect_kernels().advance_to_point),
         n(scene.links.size()),
         q0(std::move(angles)),
@@ -65,16 +64,16 @@ struct DefectCorrection::Neighbour {
     ++nfev;
   }
 
-  void begin_at(const CurveOfStep& curve, const Part& part) {
+  void begin_at(const CurveOfStep& curve, const Step& step) {
     std::swap(state.e_q, state.e_q_at_end);
     std::swap(state.e_qd, state.e_qd_at_end);
-    begin_part(points, curve, part.from, part.size, part.h, state);
+    begin_step(points, curve, step.size, step.h, state);
   }
 
   /// Goes on to point i and evaluates the right-hand side there, or to the end.
-  void advance(const Part& part, std::size_t i) {
-    advance_to_point(points, i, part.h, state);
-    if (i < points.count) evaluate(part.t_start + points.theta[i] * part.h);
+  void advance(const Step& step, std::size_t i) {
+    advance_to_point(points, i, step.h, state);
+    if (i < points.count) evaluate(step.t_start + points.theta[i] * step.h);
   }
 
   /// Where a step ends, the errors are those of the run's state again; the curve is off that by so
@@ -89,13 +88,13 @@ struct DefectCorrection::Neighbour {
   std::shared_ptr<const EquationsOfMotion> equations;
   RightHandSide qdd_of;
   const LobattoPoints& points;
-  DefectKernels::BeginPart begin_part;
+  DefectKernels::BeginStep begin_step;
   decltype(DefectKernels::advance_to_point) advance_to_point;
   std::size_t n;
   std::vector<double> q0;
   std::vector<double> shares{};  ///< of the links in the total length
-  PartState state;
-  std::vector<LobattoPoints::Polynomial> polynomials;  ///< of the errors in the last part, (n)
+  CorrectionState state;
+  std::vector<LobattoPoints::Polynomial> polynomials;  ///< of the errors in the last step, (n)
   long long nfev = 0;
 };
 
@@ -109,11 +108,7 @@ struct DefectCorrection::Scratch {
   explicit Scratch(std::size_t n) : curve(n), offset(2 * curve.width) {}
 };
 
-DefectCorrection::DefectCorrection(int parts) : parts_(parts) {
-  if (parts < 1) {
-    throw std::invalid_argument("parts = " + std::to_string(parts) + ": must be >= 1");
-  }
-}
+DefectCorrection::DefectCorrection() = default;
 DefectCorrection::~DefectCorrection() = default;
 DefectCorrection::DefectCorrection(DefectCorrection&&) noexcept = default;
 
@@ -156,29 +151,20 @@ void DefectCorrection::starts(double t, std::span<const double> y) {
   if (store_ != Store::times || is_asked_for) keep_errors_now(t);
 }
 
-void DefectCorrection::steps(const WatchedStep& step) {
-  if (step.share == 0.0) return;  // an event at the start of a step
-  const double size = step.share / parts_;
-  const double h = size * step.h;
-  const double t_start = t_start_;
+void DefectCorrection::steps(const WatchedStep& watched) {
+  if (watched.share == 0.0) return;  // an event at the start of a step
+  const Step step{t_start_, watched.t, watched.share * watched.h, watched.share};
   if (store_ == Store::end) {
     t_.clear();
     errors_.clear();
   }
   const bool goes_on = !agreement_.is_lost();
-  if (goes_on) take_curve(step);
-  for (int k = 0; k < parts_; ++k) {
-    const bool is_last = k + 1 == parts_;
-    const Part part{.from = k * size,
-                    .size = size,
-                    .t_start = t_start + k * h,
-                    .t = is_last ? step.t : t_start + (k + 1) * h,
-                    .h = h,
-                    .ends_the_step = is_last};
-    if (goes_on) go_on(part);
-    if (goes_on && is_last) end_step(step);
-    keep_errors(part);
+  if (goes_on) {
+    take_curve(watched);
+    go_on(step);
+    end_step(watched);
   }
+  keep_errors(step);
   t_start_ = step.t;
   if (goes_on) compare();
 }
@@ -193,11 +179,11 @@ void DefectCorrection::take_curve(const WatchedStep& step) {
 }
 
 /// The neighbours go on side by side, so that a processor works on several of them at once.
-void DefectCorrection::go_on(const Part& part) {
-  for (const auto& one : neighbours_) one->begin_at(scratch_->curve, part);
+void DefectCorrection::go_on(const Step& step) {
+  for (const auto& one : neighbours_) one->begin_at(scratch_->curve, step);
   for (std::size_t i = 1; i <= LobattoPoints::most; ++i) {
     for (const auto& one : neighbours_) {
-      if (i <= one->points.count) one->advance(part, i);
+      if (i <= one->points.count) one->advance(step, i);
     }
   }
 }
@@ -233,35 +219,35 @@ void DefectCorrection::compare() {
 /// A scene whose laws do not change has no impacts: its state is only settled.
 void DefectCorrection::jumps(double, std::span<const double>) {}
 
-void DefectCorrection::keep_errors(const Part& part) {
+void DefectCorrection::keep_errors(const Step& step) {
   std::vector<double>& theta = scratch_->theta;
   theta.clear();
   if (store_ == Store::times) {
     const std::size_t first = next_time_;
     for (; next_time_ < t_eval_.size(); ++next_time_) {
       const double t = t_eval_[next_time_];
-      if ((t - part.t) * part.h > 0.0) break;
-      if (part.ends_the_step && t == part.t) continue;
-      theta.push_back((t - part.t_start) / part.h);
+      if ((t - step.t) * step.h > 0.0) break;
+      if (t == step.t) continue;
+      theta.push_back((t - step.t_start) / step.h);
     }
     const std::size_t end = first + theta.size();
-    keep_errors_within(part, t_eval_.data() + first);
-    for (std::size_t i = end; i < next_time_; ++i) keep_errors_now(part.t);
+    keep_errors_within(step, t_eval_.data() + first);
+    for (std::size_t i = end; i < next_time_; ++i) keep_errors_now(step.t);
     return;
   }
   if (store_ == Store::dense) {
-    std::array<double, divisions> t;
-    for (int k = 1; k <= divisions - (part.ends_the_step ? 1 : 0); ++k) {
+    std::array<double, divisions - 1> t;
+    for (int k = 1; k < divisions; ++k) {
       theta.push_back(static_cast<double>(k) / divisions);
-      t[k - 1] = k < divisions ? part.t_start + theta.back() * part.h : part.t;
+      t[k - 1] = step.t_start + theta.back() * step.h;
     }
-    keep_errors_within(part, t.data());
+    keep_errors_within(step, t.data());
   }
-  if (part.ends_the_step) keep_errors_now(part.t);
+  keep_errors_now(step.t);
 }
 
 /// Keeps the errors at all theta of the scratch, where the times are t.
-void DefectCorrection::keep_errors_within(const Part& part, const double* t) {
+void DefectCorrection::keep_errors_within(const Step& step, const double* t) {
   Scratch& scratch = *scratch_;
   if (scratch.theta.empty()) return;
   t_.insert(t_.end(), t, t + scratch.theta.size());
@@ -269,11 +255,11 @@ void DefectCorrection::keep_errors_within(const Part& part, const double* t) {
   if (agreement_.is_lost()) return;
   scratch.polynomials.clear();
   for (const auto& one : neighbours_) {
-    defect_kernels().error_polynomials(one->points, part.h, one->state, one->polynomials.data());
+    defect_kernels().error_polynomials(one->points, step.h, one->state, one->polynomials.data());
     scratch.polynomials.push_back(one->polynomials.data());
   }
   defect_kernels().errors_within(
-      {&scratch.curve, part.from, part.size, scratch.polynomials, scratch.theta, errors});
+      {&scratch.curve, step.size, scratch.polynomials, scratch.theta, errors});
 }
 
 void DefectCorrection::keep_errors_now(double t) {

@@ -28,7 +28,7 @@
 ///
 /// Source: Zadunaisky, Numerische Mathematik 27 (1976) 21-39; Skeel, Numerische Mathematik 48
 /// (1986) 1-20, "solving for the correction". The points are those of lobatto_points.hpp. Cost: for
-/// each part of a step and neighbour one right-hand side less than there are points, and one at the
+/// each step and neighbour one right-hand side less than there are points, and one at the
 /// start.
 #pragma once
 
@@ -64,18 +64,16 @@ struct Agreement {
 /// may keep anything.
 class DefectCorrection final : public StepWatch {
  public:
-  /// Each step is integrated in so many equal parts, >= 1. More parts serve motions that are
-  /// strongly damped, and long runs.
-  explicit DefectCorrection(int parts);
+  DefectCorrection();
   ~DefectCorrection() override;
   DefectCorrection(DefectCorrection&&) noexcept;
 
-  /// Adds a neighbour for each of some numbers of points in a part of a step, 5 to 9: a scene of as
+  /// Adds a neighbour for each of some numbers of points in a step, 5 to 9: a scene of as
   /// many links as the run's, and its angles at the start, (n) rad. Throws std::invalid_argument
   /// for other sizes, and for a scene that has no defect correction.
   void add(const Scene& scene, const std::vector<double>& q0, std::span<const int> points);
   /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
-  /// with dense output at six times in each part of a step.
+  /// with dense output at six times in each step.
   void keep(Store store, const std::vector<double>& t_eval);
 
   bool asks_for_dense_output() const override { return true; }
@@ -93,19 +91,18 @@ class DefectCorrection final : public StepWatch {
   long long nfev() const;     ///< right-hand sides
 
  private:
-  struct Part;
+  struct Step;
   struct Neighbour;
   struct Scratch;
   void take_curve(const WatchedStep& step);
-  void go_on(const Part& part);
+  void go_on(const Step& step);
   void end_step(const WatchedStep& step);
   void compare();
-  void keep_errors(const Part& part);
-  void keep_errors_within(const Part& part, const double* t);
+  void keep_errors(const Step& step);
+  void keep_errors_within(const Step& step, const double* t);
   void keep_errors_now(double t);
   double* append(std::size_t times);
 
-  int parts_;
   std::vector<std::unique_ptr<Neighbour>> neighbours_;
   std::unique_ptr<Scratch> scratch_;
   Store store_ = Store::end;

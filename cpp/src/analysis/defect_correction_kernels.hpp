@@ -10,16 +10,16 @@
 
 namespace pendcore {
 
-/// A neighbour in a part of a step.
-struct PartState {
+/// A neighbour in a step.
+struct CorrectionState {
   std::size_t n, width;
-  std::vector<double> e_q, e_qd;   ///< the errors of the curve where the part begins, (width)
+  std::vector<double> e_q, e_qd;   ///< the errors of the curve where the step begins, (width)
   std::vector<double> y;           ///< the curve at the points but the first one, (., 2 width)
   std::vector<double> r;           ///< (points, 2 width); only the second half of a row is used
   std::vector<double> q, qd, qdd;  ///< at a point, (width)
-  std::vector<double> e_q_at_end, e_qd_at_end;  ///< the errors where the part ends, (width)
+  std::vector<double> e_q_at_end, e_qd_at_end;  ///< the errors where the step ends, (width)
 
-  PartState(std::size_t links, std::size_t points) : n(links), width(padded(links)) {
+  CorrectionState(std::size_t links, std::size_t points) : n(links), width(padded(links)) {
     for (auto* one : {&e_q, &e_qd, &q, &qd, &qdd, &e_q_at_end, &e_qd_at_end}) one->resize(width);
     y.resize((points - 1) * 2 * width);
     r.resize(points * 2 * width);
@@ -28,26 +28,25 @@ struct PartState {
   const double* r_at(std::size_t point) const { return &r[(2 * point + 1) * width]; }
 };
 
-/// Begins a part of a step, which starts at `from` and spans `size` in theta and h in seconds, with
-/// all that needs no new right-hand side. The one at the first point, in qdd, is the last one of
-/// the part before; the state there lacked only what the last point itself added to the error.
+/// Begins a step, which spans `size` in theta and h in seconds, with all that needs no new
+/// right-hand side. The one at the first point, in qdd, is the last one of the step before; the
+/// state there lacked only what the last point itself added to the error.
 template <std::size_t count>
-PENDCORE_INLINE void begin_part(const LobattoPoints& points, const CurveOfStep& curve, double from,
-                                double size, double h, PartState& state) {
+PENDCORE_INLINE void begin_step(const LobattoPoints& points, const CurveOfStep& curve, double size,
+                                double h, CorrectionState& state) {
   const std::size_t width = curve.width;
   for (std::size_t k = 0; k < width; ++k) {
-    state.r_at(0)[k] = from == 0.0 ? h * state.qdd[k] - size * curve.powers[3 * width + k]
-                                   : state.r_at(count - 1)[k];
+    state.r_at(0)[k] = h * state.qdd[k] - size * curve.powers[3 * width + k];
   }
   std::array<double, count - 1> theta;
-  for (std::size_t i = 1; i < count; ++i) theta[i - 1] = from + points.theta[i] * size;
+  for (std::size_t i = 1; i < count; ++i) theta[i - 1] = points.theta[i] * size;
   evaluate_curve(curve, theta, -size, state.y.data(), &state.r[2 * width]);
 }
 
 /// Goes on with the right-hand side in qdd, at the point before i: sets q and qd at point i, or the
 /// errors at the end, if i is the number of points.
 PENDCORE_INLINE void advance_to_point(const LobattoPoints& points, std::size_t i, double h,
-                                      PartState& state) {
+                                      CorrectionState& state) {
   with_pack_for(state.n, [&, i, h]<class Row>() __attribute__((always_inline)) {
     const std::size_t width = state.width;
     const LobattoPoints::Sums& to = points.sums[i];
@@ -81,9 +80,9 @@ PENDCORE_INLINE void advance_to_point(const LobattoPoints& points, std::size_t i
   });
 }
 
-/// The polynomials of the errors of the curve's angles in the part, (n), of length h, s.
+/// The polynomials of the errors of the curve's angles in the step, (n), of length h, s.
 PENDCORE_INLINE void error_polynomials(const LobattoPoints& points, double h,
-                                       const PartState& state,
+                                       const CorrectionState& state,
                                        LobattoPoints::Polynomial* polynomials) {
   constexpr int packs = LobattoPoints::powers / 4;
   for (std::size_t link = 0; link < state.n; ++link) {
@@ -100,12 +99,12 @@ PENDCORE_INLINE void error_polynomials(const LobattoPoints& points, double h,
   }
 }
 
-/// Errors of the run's angles within a part.
+/// Errors of the run's angles within a step.
 struct ErrorsWithin {
   const CurveOfStep* curve;
-  double from, size;  ///< of the part, in theta of the step
+  double size;  ///< in theta, 1 unless an event ends the step
   std::span<const LobattoPoints::Polynomial* const> polynomials;  ///< of each neighbour, (n)
-  std::span<const double> theta;                                  ///< of the part
+  std::span<const double> theta;                                  ///< as shares of the size
   double* errors;                                                 ///< (theta, neighbours, n)
 };
 
@@ -116,7 +115,7 @@ PENDCORE_INLINE void errors_within(const ErrorsWithin& wanted) {
   const std::size_t neighbours = wanted.polynomials.size();
   for (std::size_t first = 0; first < wanted.theta.size(); first += 4) {
     const Pack<4> theta = load_links<Pack<4>>(wanted.theta.data(), first, wanted.theta.size());
-    const Pack<4> of_step = fma(wanted.size, theta, broadcast<Pack<4>>(wanted.from));
+    const Pack<4> of_step = wanted.size * theta;
     const std::size_t some = std::min<std::size_t>(4, wanted.theta.size() - first);
     for (std::size_t link = 0; link < n; ++link) {
       Pack<4> offset{};
@@ -142,14 +141,14 @@ PENDCORE_INLINE void errors_within(const ErrorsWithin& wanted) {
 
 /// All of them for this processor.
 struct DefectKernels {
-  using BeginPart = void (*)(const LobattoPoints&, const CurveOfStep&, double, double, double,
-                             PartState&);
+  using BeginStep =
+      void (*)(const LobattoPoints&, const CurveOfStep&, double, double, CorrectionState&);
 
   decltype(fastest<&pendcore::set_curve>()) set_curve = fastest<&pendcore::set_curve>();
-  std::array<BeginPart, 5> begin_part_of = {
-      fastest<&pendcore::begin_part<5>>(), fastest<&pendcore::begin_part<6>>(),
-      fastest<&pendcore::begin_part<7>>(), fastest<&pendcore::begin_part<8>>(),
-      fastest<&pendcore::begin_part<9>>()};  ///< for so many points
+  std::array<BeginStep, 5> begin_step_of = {
+      fastest<&pendcore::begin_step<5>>(), fastest<&pendcore::begin_step<6>>(),
+      fastest<&pendcore::begin_step<7>>(), fastest<&pendcore::begin_step<8>>(),
+      fastest<&pendcore::begin_step<9>>()};  ///< for so many points
   decltype(fastest<&pendcore::advance_to_point>()) advance_to_point =
       fastest<&pendcore::advance_to_point>();
   decltype(fastest<&pendcore::offset_from_state>()) offset_from_state =
@@ -158,8 +157,8 @@ struct DefectKernels {
       fastest<&pendcore::error_polynomials>();
   decltype(fastest<&pendcore::errors_within>()) errors_within = fastest<&pendcore::errors_within>();
 
-  BeginPart begin_part(std::size_t points) const {
-    return begin_part_of.at(points - LobattoPoints::least);
+  BeginStep begin_step(std::size_t points) const {
+    return begin_step_of.at(points - LobattoPoints::least);
   }
 };
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from pendcore._accuracy.defect_correction import correction_along, error_from_defect, ways
 from pendcore._accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
@@ -26,6 +25,7 @@ from pendcore._accuracy.method_choice import (
     same_or_other,
 )
 from pendcore._accuracy.rounding import moved
+from pendcore._accuracy.tuning import COMPENSATED_BELOW, FEW, FIRST_COUNTS_AS, FOR_BOTH, MOST_STEPS
 from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
 from pendcore._messages.warning import warn
@@ -43,15 +43,6 @@ from pendcore._run.solution import Solution
 from pendcore._run.work import correction_work, series_work
 from pendcore._scene.effect_description import Description
 
-FOR_BOTH = 5.0
-"""A method is chosen for an error smaller by this factor, as second runs take the same method."""
-COMPENSATED_BELOW = 1e-12
-"""The rtol below which trials use compensated sums of the state."""
-MOST_STEPS, FIRST_COUNTS_AS = 300, 100
-"""A later run may take MOST_STEPS times as many steps as the first trial, which counts as
-FIRST_COUNTS_AS if it took fewer."""
-FEW = 50
-"""At fewer times than these, the error of a run may be small by chance."""
 _ADVANCE = 0.35
 """The share of what is left of the progress bar that a run fills."""
 
@@ -76,6 +67,23 @@ class TrialRun:
         return f"{self.method} at rtol {self.rtol:g}"
 
 
+class Strategy(Protocol):
+    """How the error of a trial is verified; `pendcore._accuracy.strategies` has the table."""
+
+    @property
+    def method(self) -> str:
+        """The method of its trials; empty where the error that is asked for chooses it."""
+
+    def correction(self, start: Start, scale: float) -> DefectCorrection | None:
+        """Return what is to look on while a trial of a typical error, ``scale``, is made."""
+
+    def verify(self, runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
+        """Return the error of a trial, if what was computed so far shows it."""
+
+    def next_run(self, runs: Trials) -> TrialRun | None:
+        """Make the run that is expected to verify a trial; None where no run can."""
+
+
 class Trials:
     """Makes the runs for one error, compares them and keeps count of them."""
 
@@ -85,7 +93,9 @@ class Trials:
         error: float,
         options: dict[str, Any],
         report: Callable[[float], object] | None,
+        strategies: Sequence[Strategy],
     ) -> None:
+        self.strategies, self.strategy = strategies, strategies[0]
         self.start = start
         self.error = error
         self.options = options
@@ -96,7 +106,6 @@ class Trials:
         self.is_stiff = False
         self.tries_the_least = True
         self.refused: Solution | None = None
-        self.ways = ways(start, error)
         self.trials: list[TrialRun] = []
         self.seconds: list[TrialRun] = []
         self.paid: list[TrialRun] = []
@@ -106,6 +115,10 @@ class Trials:
     @property
     def tightest(self) -> float:
         return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
+
+    @property
+    def tightest_trial(self) -> TrialRun:
+        return min(self.trials, key=lambda trial: trial.scale)
 
     @property
     def is_out_of_time(self) -> bool:
@@ -130,9 +143,7 @@ class Trials:
         """Return the method that typically takes the least work to reach an error and verify it."""
         if self.is_stiff:
             return implicit_method()
-        if self.ways:
-            return pair_of(self.ways[0].method)
-        return pair_of(cheapest(self.start, scale / FOR_BOTH))
+        return pair_of(self.strategy.method or cheapest(self.start, scale / FOR_BOTH))
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Make a run with all the options that the user gave."""
@@ -141,19 +152,18 @@ class Trials:
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
         correction = None
-        if self.ways and not self.is_stiff:
-            correction = correction_along(
-                self.start, self.ways[0], rtol * error_over_rtol(leading(method))
-            )
+        if not self.is_stiff:
+            scale = rtol * error_over_rtol(leading(method))
+            correction = self.strategy.correction(self.start, scale)
         trial = self._run(self.start, method, rtol, options, correction)
         self.trials.append(trial)
         self.seconds = [self._as_far_as(trial, second) for second in self.seconds]
         return trial
 
-    def for_least(self, error: float) -> Trials:
+    def for_least(self, error: float, strategies: Sequence[Strategy]) -> Trials:
         """Return a search for another error, in the time that is left, which tries no other one."""
         options = {**self.options, "compensated": self.compensated}
-        other = Trials(self.start, error, options, self.report)
+        other = Trials(self.start, error, options, self.report, strategies)
         other.began, other.time_limit, other.tries_the_least = self.began, self.time_limit, False
         other._done = self._done
         return other
@@ -166,15 +176,6 @@ class Trials:
     def drop(self, trial: TrialRun) -> None:
         """Forget a trial that was too loose to come to its end."""
         self.trials.remove(trial)
-
-    def next_way(self) -> None:
-        """Go on in another way: the defect of the trials did not show their error in this one.
-
-        After the last way, second runs may verify its trials.
-        """
-        del self.ways[0]
-        if self.ways:
-            self.trials.clear()
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Make a run that is better than a trial, with other steps, constants and start."""
@@ -207,18 +208,16 @@ class Trials:
             self._estimates[key] = estimate(trial.solution, solutions, text, share)
         return self._estimates[key]
 
-    def error_from_defect(self, trial: TrialRun) -> ErrorEstimate | None:
-        """Return the error of a trial as its defect shows it; None where it does not."""
-        if trial.correction is None or trial.solution.stats.stiff or not self.ways:
-            return None
-        key = (trial,)
-        if key not in self._estimates:
-            text = f"the {DEFECT}{trial.text}"
-            error = error_from_defect(trial.solution, trial.correction, self.ways[0], text)
+    def remembered(
+        self, trial: TrialRun, found: Callable[[], ErrorEstimate | None]
+    ) -> ErrorEstimate | None:
+        """Return the error that a trial's own defect shows, found once."""
+        if (trial,) not in self._estimates:
+            error = found()
             if error is None:
                 return None
-            self._estimates[key] = error
-        return self._estimates[key]
+            self._estimates[trial,] = error
+        return self._estimates[trial,]
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
         """Return how far a trial is at most from one second run, as a share of the length."""
@@ -230,10 +229,10 @@ class Trials:
         complete = [run for run in own if run.solution.success]
         return min(complete, key=lambda run: run.scale).solution if complete else None
 
-    def labelled(
+    def concluded(
         self, solution: Solution, outcome: Outcome, error: ErrorEstimate | None, why: str = ""
     ) -> Solution:
-        """Attach to a trial what is known of its error, or ``why`` nothing is known."""
+        """Return a trial with what is known of its error, or ``why`` nothing is known."""
         begin = self.start.t_start
         is_whole = error is not None and error.is_complete and not error.is_lost
         solution.known_error = error
