@@ -12,11 +12,7 @@ from pendcore._accuracy import defect_correction
 from pendcore._run.call import Choice, Start, atol_beside, run
 
 CHAIN = pc.Scene(
-    links=[
-        pc.Link(mass=1.0, length=0.5),
-        pc.Link(mass=2.0, length=0.3),
-        pc.Link(mass=0.5, length=1),
-    ],
+    links=[pc.Link(mass=m, length=x) for m, x in ((1.0, 0.5), (2.0, 0.3), (0.5, 1.0))],
     effects=[pc.effects.ViscousJoint(joint=2, damping=0.1)],
 )
 DRIVEN = pc.Scene(
@@ -43,6 +39,12 @@ WAYS = [
     defect_correction.SERIES_7_6_TWICE,
     defect_correction.RUNGE_KUTTA,
 ]
+each_way = pytest.mark.parametrize(
+    "way", WAYS, ids=lambda way: f"{way.method} {way.points} {way.parts}"
+)
+one_part_and_two = pytest.mark.parametrize(
+    "way", [WAYS[0], WAYS[1], WAYS[3]], ids=["one part of 6 points", "one part of 7", "two parts"]
+)
 KEPT: dict[str, dict[str, Any]] = {
     "dense": {},
     "steps": {"store": "steps"},
@@ -70,7 +72,7 @@ def angles(start: Start, t: np.ndarray) -> np.ndarray:
     return run(start, exact)(t)[: len(start.scene.links)].T
 
 
-@pytest.mark.parametrize("way", WAYS, ids=lambda way: f"{way.method} {way.points} {way.parts}")
+@each_way
 @pytest.mark.parametrize("name", SCENES)
 def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Way) -> None:
     start = SCENES[name]
@@ -78,6 +80,10 @@ def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Wa
     t = correction.t
     assert (t[0], t[-1]) == (start.t_start, start.t_end)
     assert len(t) >= 6 * solution.stats.accepted
+    steps = way.parts * solution.stats.accepted
+    assert correction.nfev == sum(1 + steps * (points - 1) for points in way.points)
+    alone = run(start, Choice(way.method, 1e-6, 1e-9))
+    assert solution.y.tobytes() == alone.y.tobytes()
     error = angles(start, t) - solution(t)[: len(start.scene.links)].T
     assert np.abs(error).max() > 1e-9
     for one in np.moveaxis(correction.errors, 1, 0):
@@ -86,7 +92,7 @@ def test_correction_is_the_error_of_the_run(name: str, way: defect_correction.Wa
 
 @pytest.mark.parametrize("kept", KEPT)
 @pytest.mark.parametrize("name", ["textbook", "backward"])
-@pytest.mark.parametrize("way", [WAYS[1], WAYS[3]], ids=["one part", "two parts"])
+@one_part_and_two
 def test_errors_are_kept_where_states_are(name: str, way: defect_correction.Way, kept: str) -> None:
     start = SCENES[name]
     solution, correction = corrected(start, start.scene, way, **KEPT[kept])
@@ -107,14 +113,6 @@ def test_errors_at_ends_of_steps_and_parts_are_those_within_them() -> None:
     run(start, choice, halves, correction=correction)
     at = np.searchsorted(whole.t, halves)
     assert correction.errors == pytest.approx(whole.errors[at], rel=1e-9, abs=1e-22)
-
-
-@pytest.mark.parametrize("way", WAYS, ids=lambda way: f"{way.method} {way.points} {way.parts}")
-def test_right_hand_sides_are_counted(way: defect_correction.Way) -> None:
-    start = SCENES["three links"]
-    solution, correction = corrected(start, start.scene, way)
-    steps = way.parts * solution.stats.accepted
-    assert correction.nfev == sum(1 + steps * (points - 1) for points in way.points)
 
 
 @pytest.mark.parametrize("method", ["taylor", "dop853"])
@@ -158,33 +156,19 @@ def test_neighbour_that_is_another_scene_gives_the_distance_from_its_motion() ->
     assert np.abs(correction.errors[:, 0]).max() < 1e-9
 
 
-def test_correction_ends_at_an_event_within_a_step() -> None:
-    start = SCENES["textbook"]._replace(t_end=50.0)
-    event = pc.events.JointAngle(joint=1, value=1.2, terminal=True)._as_pair()
-    solution, correction = corrected(start, start.scene, WAYS[0], events=[event])
-    assert solution.status == "event"
-    assert correction.t[-1] == solution.t[-1] < 50.0
-    t = correction.t
-    error = angles(start._replace(t_end=5.0), t) - solution(t)[:2].T
-    assert np.abs(correction.errors[:, 0] - error).max() <= 0.15 * np.abs(error).max()
-
-
-def test_run_has_the_same_bits_with_and_without_a_correction() -> None:
-    start = SCENES["three links"]
-    for way in WAYS:
-        with_it, _ = corrected(start, start.scene, way)
-        alone = run(start, Choice(way.method, 1e-6, 1e-9))
-        assert with_it.y.tobytes() == alone.y.tobytes()
-
-
 def test_unstable_correction_is_not_trusted_and_second_runs_take_its_place() -> None:
-    damped = pc.Scene(links=CHAIN.links, effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
+    damped = CHAIN.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
     start = Start(damped, [2.0, 1.0, 1.5], 0.0, 0.0, 1.0)
     solution, correction = corrected(start, damped, WAYS[0], rtol=1e-8)
     assert defect_correction.error_from_defect(solution, correction, WAYS[0], "") is None
-    sol = pc.simulate(damped, q0=start.q0, qd0=0.0, t_span=(0, 1), error=1e-7)
-    assert sol.accuracy.outcome == "kept"
-    assert not sol.accuracy.verified_by.startswith("the defect")
+    sol = pc.simulate(damped, (0, 1), start.q0, error=1e-7)
+    told = sol.accuracy
+    assert told.outcome == "kept"
+    assert not told.verified_by.startswith("the defect")
+    verified = [paid.method for paid in told.paid if paid.purpose == "verify"]
+    assert verified
+    assert not any(method.startswith("defect of") for method in verified)
+    assert told.runs < len(told.paid)
     t = np.linspace(0, 1, 101)
     assert np.abs(angles(start, t) - sol(t)[:3].T).max() <= 1e-6
 
@@ -204,11 +188,9 @@ def test_chaotic_motion_is_lost_and_its_early_part_known() -> None:
 
 
 def test_scene_that_switches_or_has_no_series_has_no_way() -> None:
-    stopped = pc.Scene(
-        links=CHAIN.links, effects=[pc.effects.JointStop(joint=2, range=(-1.0, 1.0))]
-    )
+    stopped = CHAIN.replace(effects=[pc.effects.JointStop(joint=2, range=(-1.0, 1.0))])
     drag = pc.effects.RodDrag(link=1, drag_coefficient=1.2, diameter=0.01)
-    dragged = pc.Scene(links=CHAIN.links, effects=[drag])
+    dragged = CHAIN.replace(effects=[drag])
     for scene in (stopped, dragged):
         assert defect_correction.ways(Start(scene, [1.5] * 3, 0.0, 0.0, 1.0), 1e-6) == []
     with pytest.raises(ValueError, match="a law switches"):
@@ -225,51 +207,43 @@ def test_run_of_no_length_and_one_with_a_ledger_are_corrected_too() -> None:
     assert with_ledger.errors[-1] == pytest.approx(alone.errors[-1], rel=0.2)
 
 
-@pytest.mark.parametrize(
-    "way",
-    [defect_correction.SERIES_6_5, defect_correction.SERIES_6_5_TWICE],
-    ids=["one part", "two parts"],
-)
-def test_times_before_an_event_are_kept_and_none_after_it(way: defect_correction.Way) -> None:
+@one_part_and_two
+@pytest.mark.parametrize("kept", [{}, {"t_eval": 2001}], ids=["dense", "times"])
+def test_correction_ends_at_an_event_within_a_step(
+    way: defect_correction.Way, kept: dict[str, Any]
+) -> None:
     start = SCENES["textbook"]._replace(t_end=50.0)
     event = pc.events.JointAngle(joint=1, value=1.2, terminal=True)._as_pair()
-    solution, correction = corrected(start, start.scene, way, events=[event], t_eval=2001)
+    solution, correction = corrected(start, start.scene, way, events=[event], **kept)
     assert solution.status == "event"
-    assert 3 < len(solution.t) < 2001
-    assert correction.t.tolist() == solution.t.tolist()
-    error = angles(start._replace(t_end=5.0), solution.t) - solution.q
+    t = correction.t
+    if kept:
+        assert 3 < len(solution.t) < 2001
+        assert t.tolist() == solution.t.tolist()
+    else:
+        assert t[-1] == solution.t[-1] < 50.0
+    q = solution.q if kept else solution(t)[:2].T
+    error = angles(start._replace(t_end=5.0), t) - q
     assert np.abs(correction.errors[:, 0] - error).max() <= 0.15 * np.abs(error).max()
 
 
 def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
-    start = SCENES["textbook"]
+    start, tight = SCENES["textbook"], Choice("taylor", 1e-6, 1e-9)
     correction = defect_correction.correction_along(start, WAYS[0], 1e-6)
-    run(start, Choice("taylor", 1e-6, 1e-9), correction=correction)
+    run(start, tight, correction=correction)
     with pytest.raises(ValueError, match="a run already"):
-        run(start, Choice("taylor", 1e-6, 1e-9), correction=correction)
-    with pytest.raises(ValueError, match="as many links"):
-        _core.DefectCorrection([(start.scene._compiled, [1.0] * 3, [6])], 1)
-    mixed = [(start.scene._compiled, [1.0] * 2, [6]), (CHAIN._compiled, [1.0] * 3, [5])]
-    with pytest.raises(ValueError, match="as many links"):
-        _core.DefectCorrection(mixed, 1)
-    three = _core.DefectCorrection([(CHAIN._compiled, [1.0] * 3, [6])], 1)
+        run(start, tight, correction=correction)
+    book, chain = start.scene._compiled, CHAIN._compiled
+    for neighbours, message in (
+        ([(book, [1.0] * 3, [6])], "as many links"),
+        ([(book, [1.0] * 2, [6]), (chain, [1.0] * 3, [5])], "as many links"),
+        ([(chain, [1.5] * 3, [4])], "points = 4: must be from 5 to 9"),
+        ([(chain, [1.5] * 3, [10])], "points = 10: must be from 5 to 9"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            _core.DefectCorrection(neighbours, 1)
     with pytest.raises(ValueError, match="more links than the run"):
-        run(start, Choice("taylor", 1e-6, 1e-9), correction=three)
-
-
-def test_what_was_not_trusted_did_not_verify() -> None:
-    damped = pc.Scene(links=CHAIN.links, effects=[pc.effects.ViscousJoint(joint=1, damping=300.0)])
-    told = pc.simulate(damped, q0=[2.0, 1.0, 1.5], qd0=0.0, t_span=(0, 1), error=1e-7).accuracy
-    verified = [paid.method for paid in told.paid if paid.purpose == "verify"]
-    assert verified
-    assert not any(method.startswith("defect of") for method in verified)
-    assert told.runs < len(told.paid)
-
-
-@pytest.mark.parametrize("points", [4, 10])
-def test_number_of_points_is_bounded(points: int) -> None:
-    with pytest.raises(ValueError, match=f"points = {points}: must be from 5 to 9"):
-        _core.DefectCorrection([(CHAIN._compiled, [1.5] * 3, [points])], 1)
+        run(start, tight, correction=_core.DefectCorrection([(chain, [1.0] * 3, [6])], 1))
 
 
 def test_rounding_of_the_states_is_part_of_the_error() -> None:
