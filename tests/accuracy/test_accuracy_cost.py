@@ -12,7 +12,6 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore._accuracy.position_error import time_grid
-from pendcore._run.methods import known_methods, line_style
 from pendcore.cli import main
 from pendcore.cost.point import Point, front, seconds_at
 from pendcore.cost.reference import reference
@@ -48,8 +47,6 @@ def test_distances_are_those_of_joints_and_tip():
     expected = abs(tips(q, lengths) - tips(r, lengths)).max(axis=-1) / sum(lengths)
     assert scene.distances(q, r) == pytest.approx(expected, rel=1e-13)
     assert scene.distances(q, q + 2 * np.pi).max() < 1e-14
-    tiny = scene.distances(q[:, :], q + 1e-17 * np.array([1, 0, 0]) * 2.0**20)
-    assert (tiny >= 0).all()
     assert math.isnan(scene.distances([math.nan, 0, 0], [0, 0, 0]))
 
 
@@ -139,67 +136,49 @@ def test_the_best_is_the_cheapest_that_keeps_the_error(book):
     with pytest.raises(ValueError, match=r"error = 1e-17: nothing measured here reaches it"):
         book.best(1e-17)
     best = book.best(1e-6)
-    for part in ("for 1e-06 of the length over 5 s take", best.method, best.setting, "ten times"):
-        assert part in book.sentence(1e-6)
+    advice = f"for 1e-06 of the length over 5 s take {best.method} at {best.setting}: "
+    assert book.sentence(1e-6).startswith(advice)
+    assert "ten times the accuracy" in book.sentence(1e-6)
     assert "nothing measured" in book.sentence(1e-17)
 
 
-def test_it_prints_pickles_and_becomes_json(book, tmp_path):
+def test_it_pickles_and_becomes_strict_json(book, tmp_path):
     assert pickle.loads(pickle.dumps(book)) == book
-    with pytest.raises(AttributeError):
-        book.name = "other"
-    table = str(book)
-    for part in ("What accuracy costs: the book's, 0 ... 5 s", "uncertainty", "rtol 1e-09", "*"):
-        assert part in table
     text = book.to_json(tmp_path / "cost.json")
+    assert (tmp_path / "cost.json").read_text() == text + "\n"
 
     def refuse(name):
         raise AssertionError(f"{name} is no JSON")
 
-    for written in (text, (tmp_path / "cost.json").read_text()):
-        kept = json.loads(written, parse_constant=refuse)
-        assert len(kept["points"]) == len(book)
-        front = [(p["method"], p["rtol"], p["step"]) for p in kept["points"] if p["pareto"]]
-        assert sorted(front, key=str) == sorted(
-            [(p.method, p.rtol, p.step) for p in book.pareto()], key=str
-        )
+    kept = json.loads(text, parse_constant=refuse)
+    assert len(kept["points"]) == len(book)
+    front = [(p["method"], p["rtol"], p["step"]) for p in kept["points"] if p["pareto"]]
+    best = [(p.method, p.rtol, p.step) for p in book.pareto()]
+    assert sorted(front, key=str) == sorted(best, key=str)
 
 
 @pytest.mark.parametrize("y", ["time", "nfev"])
-def test_the_figure_has_a_line_a_method_units_and_a_legend_beside_the_data(book, y):
-    figure, ax = plt.subplots(layout="constrained", figsize=(8, 5))
-    lines = book.plot(ax=ax, y=y)
+def test_the_figure_has_a_line_a_method_with_its_unit_and_shades_what_is_not_known(book, y):
+    lines = book.plot(y=y)
+    ax = lines[0].axes
     assert [line.get_label() for line in lines] == [*dict.fromkeys(p.method for p in book)]
-    axis = re.search(r"time of a run \((\w+)\)", ax.get_ylabel())
-    factor = {"\N{MICRO SIGN}s": 1e6, "ms": 1e3, "s": 1.0}[axis[1]] if axis else 1.0
+    unit = re.search(r"time of a run \((\w+)\)", ax.get_ylabel())
+    factor = {"\N{MICRO SIGN}s": 1e6, "ms": 1e3, "s": 1.0}[unit[1]] if unit else 1.0
     for line in lines:
         ours = [p for p in book if p.method == line.get_label()]
         assert line.get_xdata().tolist() == [p.error for p in ours]
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
         assert line.get_ydata() == pytest.approx(height)
-    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
     assert "total length" in ax.get_xlabel()
-    assert axis if y == "time" else ax.get_ylabel() == "right-hand sides (of taylor: series)"
-    assert y == "nfev" or 0.1 <= min(min(line.get_ydata()) for line in lines) < 100
-    figure.canvas.draw()
-    legend = ax.get_legend().get_window_extent()
-    assert not legend.overlaps(ax.get_window_extent())
-    assert figure.bbox.x1 >= legend.x1
+    assert unit if y == "time" else ax.get_ylabel() == "right-hand sides (of taylor: series)"
     (known,) = [p for p in ax.patches if p.get_width()]
     assert known.get_bbox().x1 == pytest.approx(book.uncertainty)
 
 
-def test_the_figures_lines_differ_without_colour():
-    styles = [line_style(method) for method in known_methods()]
-    assert len({(str(style["linestyle"]), style["marker"]) for style in styles}) == len(styles)
-
-
-@pytest.mark.parametrize(
-    ("options", "error"), [({"y": "cost"}, ValueError), ({"ax": 3}, TypeError)]
-)
-def test_the_figure_refuses_what_it_cannot_draw(book, options, error):
-    with pytest.raises(error, match=next(iter(options))):
-        book.plot(**options)
+def test_the_figure_refuses_what_it_cannot_draw(book):
+    for given, error in (({"y": "cost"}, ValueError), ({"ax": 3}, TypeError)):
+        with pytest.raises(error, match=next(iter(given))):
+            book.plot(**given)
 
 
 def test_a_chaotic_span_is_cut_to_what_can_be_followed():
@@ -211,16 +190,16 @@ def test_a_chaotic_span_is_cut_to_what_can_be_followed():
     assert found.remarks[0] in " ".join(str(found).split())
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [
-        [E.DryJointFriction(joint=1, coulomb=2.0), E.DryJointFriction(joint=2, coulomb=1.0)],
-        [E.JointStop(joint=2, range=(-0.5, 0.5), restitution=0.5)],
-    ],
-    ids=["rubbed", "stopped"],
-)
-def test_scenes_in_pieces_are_measured_too(effects):
-    found = pc.accuracy_cost(BOOK.replace(effects=effects), q0=[0.7, 1.0], t_span=(0, 3), **QUICK)
+PIECES = {
+    "rubbed": [E.DryJointFriction(joint=j, coulomb=c) for j, c in ((1, 2.0), (2, 1.0))],
+    "stopped": [E.JointStop(joint=2, range=(-0.5, 0.5), restitution=0.5)],
+}
+
+
+@pytest.mark.parametrize("kind", PIECES)
+def test_scenes_in_pieces_are_measured_too(kind):
+    scene = BOOK.replace(effects=PIECES[kind])
+    found = pc.accuracy_cost(scene, q0=[0.7, 1.0], t_span=(0, 3), **QUICK)
     assert found.best(1e-5).error < 1e-5
     assert found.t_span == (0, 3)
 
@@ -239,55 +218,36 @@ def test_a_stiff_scene_is_measured_and_what_takes_too_long_says_so():
     assert json.loads(found.to_json())["points"][0]["error"] is None
 
 
-def test_interrupted_it_hands_over_what_it_has(book):
+@pytest.mark.parametrize("limit", [0.45, -1.0])
+def test_interrupted_it_hands_over_what_it_has(book, limit):
     def report(fraction):
         if fraction > limit:
             raise KeyboardInterrupt
 
-    limit = 0.45
     with pytest.raises(KeyboardInterrupt) as caught:
         pc.accuracy_cost(BOOK, *START, progress=report, repeats=3)
     found = caught.value.accuracy_cost
-    assert 0 < len(found) < len(book)
     assert "interrupted" in found.remarks[-1]
-    limit = -1.0
-    with pytest.raises(KeyboardInterrupt) as caught:
-        pc.accuracy_cost(BOOK, *START, progress=report)
-    none = caught.value.accuracy_cost
-    assert (len(none), none.t_span, none.times) == (0, (0, 5), 0)
-    assert "interrupted" in str(none)
-    assert "nothing was measured before it was stopped" in str(none)
-    assert json.loads(none.to_json())["uncertainty"] is None
-    none.plot()
+    assert found.remarks[-1] in str(found)
+    if limit > 0:
+        assert 0 < len(found) < len(book)
+        return
+    assert (len(found), found.t_span, found.times) == (0, (0, 5), 0)
+    assert "nothing was measured before it was stopped" in str(found)
+    assert json.loads(found.to_json())["uncertainty"] is None
+    found.plot()
 
 
-def test_the_interrupt_has_no_run_that_nobody_asked_for():
-    calls = []
-
-    def law(t, q, qd):
-        calls.append(t)
-        if len(calls) == 2000:
-            raise KeyboardInterrupt
-        return 0 * q
-
-    scene = BOOK.replace(effects=[E.User(law)])
-    with pytest.raises(KeyboardInterrupt) as caught:
-        pc.accuracy_cost(scene, *START)
-    assert not hasattr(caught.value, "solution")
-    assert len(caught.value.accuracy_cost) == 0
-
-
-def test_progress_only_grows():
+def test_progress_only_grows_and_what_looks_wrong_is_said_once():
     seen = []
-    pc.accuracy_cost(BOOK, *START, **QUICK, methods="dopri5", progress=seen.append)
+    with pytest.warns(pc.PendcoreWarning) as caught:
+        found = pc.accuracy_cost(
+            BOOK, (0, 1), [45, 60], **QUICK, methods="DOP853", progress=seen.append
+        )
+    assert {p.method for p in found} == {"dop853"}  # one name need not be in a list
+    assert len(caught) == 1
     assert seen == sorted(seen)
     assert (seen[0], seen[-1]) == (0.0, 1.0)
-
-
-def test_what_looks_wrong_is_said_once():
-    with pytest.warns(pc.PendcoreWarning) as caught:
-        pc.accuracy_cost(BOOK, q0=[45, 60], t_span=(0, 1), **QUICK, methods="dopri5")
-    assert len(caught) == 1
 
 
 def test_the_command_writes_table_figure_and_json(tmp_path, monkeypatch, capsys):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
 from typing import Any
 
 import mpmath  # type: ignore[import-untyped]
@@ -28,10 +26,6 @@ UNEVEN = pc.Scene(
 )
 
 
-def bodies(scene: pc.Scene) -> list[Body]:
-    return [Body(one.mass, one.length, one.center, one.inertia) for one in scene.links]
-
-
 def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.Solution:
     n = len(scene.links)
     if not METHODS[method]["error_order"]:
@@ -40,17 +34,18 @@ def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.
     return pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, t_end), method=method, **options)
 
 
-def value(coefficients: list[Any], theta: Any) -> Any:
-    return mpmath.polyval(coefficients[::-1], theta)
-
-
 def exact_couples(sol: pc.Solution) -> np.ndarray:
     """Return each step's largest couples on the same curve and grid, in forty digits."""
     state, n = sol._run.__getstate__(), len(sol.scene.links)
+    bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in sol.scene.links]
     steps = len(state["dense_h"])
     rows = np.asarray(state["dense_coefficients"]).reshape(steps, -1, 2 * n)
     grid = 4 * rows.shape[1]
     largest = np.zeros((steps, n))
+
+    def value(coefficients: list[Any], theta: Any) -> Any:
+        return mpmath.polyval(coefficients[::-1], theta)
+
     with mpmath.workdps(40):
         angles = [mpmath.mpf(x) for x in rows[0, 0, :n]]
         for step, h in enumerate(map(mpmath.mpf, state["dense_h"])):
@@ -62,7 +57,7 @@ def exact_couples(sol: pc.Solution) -> np.ndarray:
                 q = [a + h * value(s, theta) for a, s in zip(angles, sums, strict=True)]
                 qd = [value(w, theta) for w in rates]
                 qdd = [value(s, theta) / h for s in slopes]
-                couples = joint_couples(bodies(sol.scene), sol.scene.gravity, q, qd, qdd)
+                couples = joint_couples(bodies, sol.scene.gravity, q, qd, qdd)
                 largest[step] = np.maximum(largest[step], [float(abs(c)) for c in couples])
             angles = [a + h * value(s, 1) for a, s in zip(angles, sums, strict=True)]
     return largest
@@ -85,17 +80,12 @@ def test_it_is_what_the_equations_of_each_link_say_in_forty_digits(
 def test_it_falls_at_the_order_of_the_interpolant(method: str) -> None:
     is_series = method.startswith("taylor")  # a series chooses its order by the tolerances
     how = {"rtol": 1e-3, "atol": 1e-3} if is_series else {"rtol": 1e-13, "atol": 1e-16}
-
-    def with_steps(count: int) -> pc.Defect:
-        sol = pc.simulate(
-            BOOK, q0=START, qd0=0, t_span=(0, 0.5), method=method, step=0.5 / count, **how
-        )
-        return sol.defect()
-
     counts = np.array([6, 8, 10, 12, 14, 16, 20, 24] if is_series else [20, 28, 40])
-    found = [with_steps(n) for n in counts]
-    torques = np.log([one.largest for one in found])
-    slope = -np.polyfit(np.log(counts), torques, 1)[0]
+    found = [
+        pc.simulate(BOOK, (0, 0.5), START, method=method, step=0.5 / n, **how).defect()
+        for n in counts
+    ]
+    slope = -np.polyfit(np.log(counts), np.log([one.largest for one in found]), 1)[0]
     assert found[0].order == (10 if is_series else METHODS[method]["interpolant_order"])
     assert slope == pytest.approx(found[0].order, abs=0.35)
     assert found[-1].largest > 1e-11  # well above rounding
@@ -106,8 +96,10 @@ def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(met
     """Before the change a run has the defect of the first method; resumed past it, the second's."""
     stiff = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)])
     first, second = method.split("-")
-    before = pc.simulate(stiff, q0=[0.8, 1.0], qd0=0.1, t_span=(0, 1e-5), method=method)
-    alone = pc.simulate(stiff, q0=[0.8, 1.0], qd0=0.1, t_span=(0, 1e-5), method=first).defect()
+    before, short = (
+        pc.simulate(stiff, (0, 1e-5), [0.8, 1.0], 0.1, method=one) for one in (method, first)
+    )
+    alone = short.defect()
     assert not before.stats.stiff
     assert (before.defect().order, before.defect().is_bound) == (alone.order, alone.is_bound)
     after = before.resume(1.0)
@@ -119,39 +111,13 @@ def test_the_defect_of_a_pair_that_changed_over_is_that_of_its_second_method(met
     assert f"with at most {found.largest:.1e} N m" in str(found)
 
 
-def test_an_exact_curve_has_none_but_rounding() -> None:
-    """Rods turning freely or under a constant torque move along polynomials."""
-    rod = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0.0)
-    for effects in ([], [fx.Motor(joint=1, constant=2.0)]):
-        sol = pc.simulate(
-            rod.replace(effects=effects), q0=0.3, qd0=1.5, t_span=(0, 2), method="dopri5"
-        )
-        found = sol.defect()
-        assert found.largest < 1e-13
-        assert found.apart.max() < 1e-14
-        assert found.share == (0.0 if found.largest == 0 else np.inf)
-
-
-@pytest.mark.parametrize("link", [0, 1])
-def test_it_sees_a_wrong_coefficient(link: int) -> None:
-    """A rate wrong by 1e-6 theta^2 (1 - theta)^2 in a step costs its slope times the inertia."""
-    sol = run(BOOK, "dop853", rtol=1e-12, atol=1e-14)
-    state = sol._run.__getstate__()
-    h = state["dense_h"][3]
-    wrong = np.array(state["dense_coefficients"]).reshape(len(state["dense_h"]), -1, 4)
-    wrong[3, 2:5, 2 + link] += 1e-6 * np.array([1, -2, 1])
-    again = _core.Run.__new__(_core.Run)
-    again.__setstate__(state | {"dense_coefficients": wrong.ravel()})
-    right, found = sol.defect(), pc.Solution(BOOK, again, "").defect()
-    theta = np.linspace(0, 1, 201)
-    slope = 1e-6 / h * np.abs(2 * theta - 6 * theta**2 + 4 * theta**3).max()
-    q = sol(sol.t[3] + h / 2)[:2]
-    expected = np.abs(BOOK.mass_matrix(q)[link:, link].sum()) * slope
-    assert found.torque[3, link] == pytest.approx(expected, rel=0.3)
-    # From then on the angle, the rate's integral, is off by 1e-6 h/30; so is gravity's torque.
-    changed = np.abs(found.torque - right.torque).max(axis=1)
-    assert changed[:3].max() == 0.0
-    assert 0.0 < changed[4:].max() < 0.05 * changed[3]
+@pytest.mark.parametrize("effects", [[], [fx.Motor(joint=1, constant=2.0)]], ids=["free", "pushed"])
+def test_a_polynomial_motion_has_none_but_rounding(effects: list[Any]) -> None:
+    rod = pc.Scene(links=[pc.Link(mass=3, length=1)], gravity=0.0, effects=effects)
+    found = pc.simulate(rod, q0=0.3, qd0=1.5, t_span=(0, 2), method="dopri5").defect()
+    assert found.largest < 1e-13
+    assert found.apart.max() < 1e-14
+    assert found.share == (0.0 if found.largest == 0 else np.inf)
 
 
 def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None:
@@ -167,24 +133,20 @@ def test_tighter_tolerances_mean_less_torque_and_a_share_of_the_weight() -> None
 
 def test_what_holds_a_joint_takes_any_torque() -> None:
     """Where a joint is stuck, at a stop or locked, only the other joints can lack torques."""
-    stick = pc.Scene(
-        links=BOOK.links,
-        effects=[fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))],
-    )
-    sol = pc.simulate(stick, q0=[0.4, 0.8], qd0=[0.0, 2.0], t_span=(0, 3), rtol=1e-10, atol=1e-12)
+    held = [fx.DryJointFriction(joint=1, coulomb=30.0), fx.JointStop(2, range=(-0.5, 0.9))]
+    stick = BOOK.replace(effects=held)
+    sol = pc.simulate(stick, (0, 3), [0.4, 0.8], [0.0, 2.0], rtol=1e-10, atol=1e-12)
     found = sol.defect()
     assert found.largest < 1e-5
-    held = np.abs(np.diff(sol(found.t + 1e-9).T[:, 2:], axis=1)) == 0
-    assert held.any()
+    assert (np.diff(sol(found.t + 1e-9).T[:, 2:], axis=1) == 0).any()
 
 
 def test_a_run_that_an_event_ends_counts_as_far_as_it_went() -> None:
     """The last polynomial continues past the end; that part does not belong to the curve."""
-    whole = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), method="dop853", step=0.1)
+    how = {"method": "dop853", "step": 0.1}
+    whole = pc.simulate(BOOK, (0, 1), START, **how)
     here = pc.events.LinkAngle(2, float(whole(0.501)[1]), terminal=True)
-    sol = pc.simulate(
-        BOOK, q0=START, qd0=0, t_span=(0, 1), method="dop853", step=0.1, events=[here]
-    )
+    sol = pc.simulate(BOOK, (0, 1), START, **how, events=[here])
     cut = sol.defect().torque
     assert sol.t[-1] == pytest.approx(0.501)
     np.testing.assert_allclose(cut[:5], whole.defect().torque[:5], rtol=1e-9)
@@ -203,27 +165,12 @@ def test_many_steps_are_added_up_as_a_few_are(monkeypatch: pytest.MonkeyPatch) -
     assert len(fractions) == -(-len(at_once.t) // 7)
 
 
-def test_its_bar_says_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
-    run(BOOK, "dopri5").defect(progress=True)
-    shown = capsys.readouterr().err
-    assert "looking for torques" in shown
-    assert "simulating" not in shown
-
-
 @pytest.mark.parametrize("store", ["end", "steps"])
 def test_without_dense_output_it_says_so(store: str) -> None:
     with pytest.raises(ValueError, match="defect: this solution keeps no dense output"):
-        pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1), store=store).defect()
+        pc.simulate(BOOK, (0, 1), START, store=store).defect()
 
 
 def test_backward_is_the_mirror_of_forward() -> None:
-    forward = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, 1)).defect()
-    backward = pc.simulate(BOOK, q0=START, qd0=0, t_span=(0, -1)).defect()
+    forward, backward = (pc.simulate(BOOK, (0, end), START).defect() for end in (1, -1))
     np.testing.assert_allclose(backward.torque, forward.torque, rtol=1e-6, atol=1e-12)
-
-
-def test_its_page_tells_what_its_lines_print(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (Path(__file__).parents[2] / "docs/background/defect.md").read_text()
-    code, told = re.search(r"```python\n(.*?)```\n\n```\n(.*?)```", page, re.DOTALL).groups()
-    exec(code, {})
-    assert capsys.readouterr().out == told

@@ -21,7 +21,6 @@ from reference.trajectories import trajectory as of_digits
 pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
 
 from true_error.arithmetic import LONG, QUAD
-from true_error.constants import inertia
 from true_error.curve import positions_apart
 from true_error.drawn import Drawn
 from true_error.families import FAMILIES
@@ -63,13 +62,13 @@ def angle(of: Drawn, *times: float) -> Any:
 # Smooth scenes -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["textbook", "unequal", "light_tip", "no_gravity", "single_rod"])
+@pytest.mark.parametrize(
+    "name", ["textbook", "unequal", "light_tip", "no_gravity", "single_rod", "three_links"]
+)
 def test_trajectories_of_forty_digits(name: str) -> None:
     """The trajectories were integrated from other equations, in another arithmetic."""
     case: Digits = of_digits(name)
-    links = [
-        pc.Link(mass=m, length=length) for m, length in zip(case.masses, case.lengths, strict=False)
-    ]
+    links = [pc.Link(mass=m, length=x) for m, x in zip(case.masses, case.lengths, strict=True)]
     damping = [E.ViscousJoint(j, b) for j, b in enumerate(case.damping, start=1) if b]
     start = tuple(map(float, case.q0)), tuple(map(float, case.qd0))
     of = drawn(damping, *start, float(case.t[-1]), case.gravity, links)
@@ -125,25 +124,6 @@ def described(effect: Any) -> tuple[str, dict[str, Any]]:
         if isinstance(value, parts) else value
         for name, value in values.items()
     }  # fmt: skip
-
-
-def test_energy_is_kept() -> None:
-    links = [pc.Link(mass=m, length=length) for m, length in ((1.0, 0.5), (1e-3, 0.7), (2.0, 0.3))]
-    of = drawn([], (0.3, -1.2, 2.0), (1.0, -2.0, 0.5), 5.0, 9.807, links)
-    found = trajectory(of, LONG)
-    K = {name: np.longdouble(float(value)) for name, value in inertia(of.scene).items()}
-
-    def energy() -> Any:
-        q, qd = np.cumsum(found.state[:3]), np.cumsum(found.state[3:])
-        kinetic = sum(
-            K[f"K{min(i, j)}{max(i, j)}"] * np.cos(q[i] - q[j]) * qd[i] * qd[j] / 2
-            for i in range(3) for j in range(3)
-        )  # fmt: skip
-        return kinetic - K["g"] * sum(K[f"h{i}"] * np.sin(q[i]) for i in range(3))
-
-    before = energy()
-    found.extend(5.0, monotonic() + 20)
-    assert abs(energy() - before) < 1e-14 * abs(before)
 
 
 @pytest.mark.parametrize("family", sorted(set(FAMILIES) - {"stiff"}))
@@ -271,12 +251,11 @@ def test_a_natural_spline_has_no_kinks() -> None:
     t, x = (0.0, 0.7, 1.0, 2.5), (0.3, -1.0, 2.0, 0.4)
     m = [float(value) for value in bends(t, x)]
     assert m[0] == m[-1] == 0.0
-    slopes = []
-    for i in range(3):
-        h, rise = t[i + 1] - t[i], (x[i + 1] - x[i]) / (t[i + 1] - t[i])
-        slopes.append((rise - h * (2 * m[i] + m[i + 1]) / 6, rise + h * (m[i] + 2 * m[i + 1]) / 6))
-    assert slopes[0][1] == pytest.approx(slopes[1][0], rel=1e-13)
-    assert slopes[1][1] == pytest.approx(slopes[2][0], rel=1e-13)
+    h = np.diff(t)
+    rise, bend = np.diff(x) / h, np.array(m)
+    after = rise - h * (2 * bend[:-1] + bend[1:]) / 6
+    before = rise + h * (bend[:-1] + 2 * bend[1:]) / 6
+    assert before[:-1] == pytest.approx(after[1:], rel=1e-13)
 
 
 def test_a_short_pulse_far_ahead_is_not_stepped_over() -> None:
@@ -297,9 +276,9 @@ def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
 
 def test_laws_that_change_side_at_one_time_all_do() -> None:
     """Two dampers in one joint act as one whose coefficient is their sum."""
-    spring = E.TorsionalSpring(1, 20.0)
     both = [E.ViscousJoint(1, 0.0, damping2=0.1), E.User(OwnLaw("quadratic damper", 1, (0.25,)))]
-    start = (1.0,), (0.0,), 5.0
-    found = angle(drawn([spring, *both], *start), 5.0)[0]
-    alone = angle(drawn([spring, E.ViscousJoint(1, 0.0, damping2=0.35)], *start), 5.0)[0]
-    assert float(found) == pytest.approx(float(alone), rel=1e-13)
+    found, alone = (
+        float(angle(drawn([E.TorsionalSpring(1, 20.0), *law], (1.0,), (0.0,), 5.0), 5.0)[0])
+        for law in (both, [E.ViscousJoint(1, 0.0, damping2=0.35)])
+    )
+    assert found == pytest.approx(alone, rel=1e-13)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
@@ -12,8 +15,8 @@ SCENE = pc.Scene.textbook()
 
 
 @pytest.fixture(autouse=True)
-def no_figure_left_over(monkeypatch):
-    def show(*_, **__):
+def no_figure_left_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    def show(*_: Any, **__: Any) -> None:
         raise AssertionError("a plot must not show itself")
 
     monkeypatch.setattr(plt, "show", show)
@@ -22,136 +25,125 @@ def no_figure_left_over(monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def sol():
+def sol() -> pc.Solution:
     return pc.Case.textbook().simulate()
 
 
-def test_labels_units_colors_and_grid_are_the_books(sol):
+def run(t_end: float = 5, q0: Any = 1.0, **options: Any) -> pc.Solution:
+    return pc.simulate(SCENE, (0, t_end), q0, **options)
+
+
+def legend(axes: Any) -> list[str]:
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_labels_units_colors_and_curves_are_the_books(sol: pc.Solution) -> None:
     lines = sol.plot()
     axes = [line.axes for line in lines]
     assert [ax.get_ylabel() for ax in axes] == ["q1 (deg)", "q2 (deg)"]
     assert [ax.get_xlabel() for ax in axes] == ["t (s)", "t (s)"]
     assert [to_rgb(line.get_color()) for line in lines] == [(1, 0, 0), (0, 0, 1)]
-    assert all(line.get_visible() for ax in axes for line in ax.get_xgridlines())
     assert axes[0] is not axes[1]
     assert axes[0].figure is axes[1].figure
-
-
-def test_curves_are_the_angles_in_degrees(sol):
-    for i, line in enumerate(sol.plot()):
+    for i, line in enumerate(lines):
         t, angle = line.get_data()
         assert (t[0], t[-1]) == (0.0, 5.0)
         np.testing.assert_allclose(angle, np.rad2deg(sol(t)[i]), rtol=1e-14)
     assert angle[0] == pytest.approx(60)
 
 
-@pytest.mark.parametrize("t_span", [(0, 5), (5, 0)])
-def test_curves_are_smooth_where_the_steps_are_long(t_span):
-    run = pc.simulate(SCENE, q0=[0.5, 1.0], t_span=t_span, rtol=1e-3)
-    assert len(run.t) < 100
-    line = run.plot()[0]
-    assert len(line.get_xdata()) > 1000
-    assert set(run.t) <= set(line.get_xdata())
-
-
 @pytest.mark.parametrize(
-    ("kept", "span"),
+    ("options", "first", "last"),
     [
-        ({"t_eval": [1.0, 2.0, 4.0]}, (1, 4)),
-        ({"t_eval": [4.0]}, (0, 5)),
-        ({"store": "end"}, (0, 5)),
+        ({"rtol": 1e-3}, 0, 5),
+        ({"rtol": 1e-3, "t_span": (5, 0)}, 5, 0),
+        ({"t_eval": [1.0, 2.0, 4.0]}, 1, 4),
+        ({"t_eval": [4.0]}, 0, 5),
+        ({"store": "end"}, 0, 5),
     ],
+    ids=str,
 )
-def test_curves_go_from_the_first_to_the_last_of_several_kept_times(kept, span):
-    line = pc.simulate(SCENE, q0=1.0, t_span=(0, 5), **kept).plot()[0]
-    assert (line.get_xdata()[0], line.get_xdata()[-1]) == span
-    assert len(line.get_xdata()) > 1000
+def test_curves_are_smooth_however_few_steps_or_times_are_kept(
+    options: dict[str, Any], first: float, last: float
+) -> None:
+    sol = pc.simulate(SCENE, **{"t_span": (0, 5), "q0": [0.5, 1.0]} | options)
+    assert len(sol.t) < 100
+    t = sol.plot()[0].get_xdata()
+    assert (t[0], t[-1]) == (first, last)
+    assert len(t) > 1000
+    if "rtol" in options:
+        assert set(sol.t) <= set(t)
 
 
-def test_a_single_point_can_be_seen():
+def test_a_single_point_can_be_seen() -> None:
     line = pc.simulate(SCENE, q0=1.0, t_span=(5, 5)).plot()[0]
     assert len(line.get_xdata()) == 1
     assert line.get_marker() == "."
 
 
-def test_it_draws_into_the_axes_it_is_given(sol):
+def test_it_draws_into_the_axes_it_is_given(sol: pc.Solution) -> None:
     _, axes = plt.subplots(1, 2)
     assert [line.axes for line in sol.plot(ax=axes)] == list(axes)
     assert len(plt.get_fignums()) == 1
-
-
-def test_one_axes_takes_all_curves_and_names_them(sol):
-    _, ax = plt.subplots()
-    lines = sol.plot(ax=ax)
-    assert [line.axes for line in lines] == [ax, ax]
-    assert ax.get_ylabel() == "q (deg)"
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["q1", "q2"]
-
-
-def test_solutions_on_the_same_axes_can_be_told_apart(sol):
-    first = sol.plot(label="rtol 1e-9")
-    axes = [line.axes for line in first]
-    second = pc.simulate(SCENE, q0=1.0, t_span=(0, 5)).plot(axes, label="another start")
-    for i in range(2):
-        assert first[i].get_linestyle() != second[i].get_linestyle()
-        legend = [text.get_text() for text in axes[i].get_legend().get_texts()]
-        assert legend == ["rtol 1e-9", "another start"]
-
-
-def test_solutions_on_one_axes_can_be_told_apart(sol):
-    _, ax = plt.subplots()
-    lines = [line for label in "abc" for line in sol.plot(ax, label=label)]
-    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 6
-    legend = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert legend == ["q1, a", "q2, a", "q1, b", "q2, b", "q1, c", "q2, c"]
-
-
-@pytest.mark.parametrize("names", [("color", "linestyle", "linewidth"), ("c", "ls", "lw")])
-def test_lines_are_drawn_as_asked(sol, names):
-    asked = dict(zip(names, ("tab:green", ":", 3.0), strict=True))
-    for line in sol.plot(**asked):
-        assert to_rgb(line.get_color()) == to_rgb("tab:green")
-        assert (line.get_linestyle(), line.get_linewidth()) == (":", 3.0)
-
-
-def test_rest_looks_like_rest():
-    hanging = pc.simulate(SCENE, q0=np.pi / 2, t_span=(0, 5))
-    line = hanging.plot()[0]
-    low, high = line.axes.get_ylim()
-    assert high - low == pytest.approx(0.1)
-    line.figure.canvas.draw()
-    assert line.axes.yaxis.get_major_formatter().get_offset() == ""
-
-
-def test_late_times_are_written_out():
-    """They do not appear as the last digits of an offset in the corner."""
-    line = pc.simulate(SCENE, q0=1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
-    line.figure.canvas.draw()
-    assert line.axes.xaxis.get_major_formatter().get_offset() == ""
-
-
-def test_what_is_drawn_after_rest_is_seen_whole(sol):
-    hanging = pc.simulate(SCENE, q0=np.pi / 2, t_span=(0, 5)).plot()
-    sol.plot([line.axes for line in hanging])
-    low, high = hanging[0].axes.get_ylim()
-    assert low < np.rad2deg(sol.q[:, 0]).min()
-    assert high > np.rad2deg(sol.q[:, 0]).max()
-
-
-@pytest.mark.parametrize("ax", ["axes", 5, [None, None]], ids=repr)
-def test_what_is_no_axes_is_refused_by_name(sol, ax):
-    with pytest.raises(TypeError, match=r"^ax = .*: must be matplotlib Axes, one, or 2"):
-        sol.plot(ax=ax)
-
-
-def test_a_single_link_has_a_single_axes():
     rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
     (line,) = pc.simulate(rod, q0=1.0, t_span=(0, 1)).plot()
     assert line.axes.get_ylabel() == "q1 (deg)"
     assert len(line.figure.axes) == 1
 
 
-def test_a_wrong_number_of_axes_is_refused(sol):
-    _, axes = plt.subplots(3, 1)
+@pytest.mark.parametrize("ax", ["axes", 5, [None, None]], ids=repr)
+def test_what_is_no_axes_is_refused_by_name(sol: pc.Solution, ax: Any) -> None:
+    with pytest.raises(TypeError, match=r"^ax = .*: must be matplotlib Axes, one, or 2"):
+        sol.plot(ax=ax)
+
+
+def test_a_wrong_number_of_axes_is_refused(sol: pc.Solution) -> None:
     with pytest.raises(ValueError, match=r"^ax: 3 axes: must be one, or 2"):
-        sol.plot(ax=axes)
+        sol.plot(ax=plt.subplots(3, 1)[1])
+
+
+def test_solutions_on_the_same_axes_can_be_told_apart(sol: pc.Solution) -> None:
+    first = sol.plot(label="rtol 1e-9")
+    second = run().plot([line.axes for line in first], label="another start")
+    for one, other in zip(first, second, strict=True):
+        assert one.get_linestyle() != other.get_linestyle()
+        assert legend(one.axes) == ["rtol 1e-9", "another start"]
+
+
+def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol: pc.Solution) -> None:
+    _, ax = plt.subplots()
+    sol.plot(ax=ax)
+    assert ax.get_ylabel() == "q (deg)"
+    assert legend(ax) == ["q1", "q2"]
+    _, ax = plt.subplots()
+    lines = [line for label in "abc" for line in sol.plot(ax, label=label)]
+    assert {line.axes for line in lines} == {ax}
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 6
+    assert legend(ax) == ["q1, a", "q2, a", "q1, b", "q2, b", "q1, c", "q2, c"]
+
+
+@pytest.mark.parametrize("names", [("color", "linestyle", "linewidth"), ("c", "ls", "lw")])
+def test_lines_are_drawn_as_asked(sol: pc.Solution, names: tuple[str, ...]) -> None:
+    asked = dict(zip(names, ("tab:green", ":", 3.0), strict=True))
+    for line in sol.plot(**asked):
+        assert to_rgb(line.get_color()) == to_rgb("tab:green")
+        assert (line.get_linestyle(), line.get_linewidth()) == (":", 3.0)
+
+
+def test_rest_looks_like_rest_and_what_is_drawn_after_it_is_seen_whole(sol: pc.Solution) -> None:
+    hanging = run(q0=np.pi / 2).plot()
+    axes = hanging[0].axes
+    assert np.ptp(axes.get_ylim()) == pytest.approx(0.1)
+    axes.figure.canvas.draw()
+    assert axes.yaxis.get_major_formatter().get_offset() == ""
+    sol.plot([line.axes for line in hanging])
+    low, high = axes.get_ylim()
+    angles = np.rad2deg(sol.q[:, 0])
+    assert low < angles.min() < angles.max() < high
+
+
+def test_late_times_are_written_out() -> None:
+    """They do not appear as the last digits of an offset in the corner."""
+    line = pc.simulate(SCENE, q0=1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
+    line.figure.canvas.draw()
+    assert line.axes.xaxis.get_major_formatter().get_offset() == ""

@@ -63,19 +63,34 @@ def test_a_thumbnail_is_the_dense_output(keep: dict[str, Any]) -> None:
         assert pose[1] - pose[0] == pytest.approx(length * (place[1] - place[0]), abs=0.2)
 
 
-def test_a_notebook_waits_for_no_second_run_that_is_long_and_calls_no_function_of_ones_own() -> (
-    None
-):
-    calls = []
-    counted = pc.effects.User(function=lambda t, q, qd: calls.append(t) or -0.1 * qd)
-    own = simulate(SWINGING.replace(effects=[counted]), store="end")
+class Counted:
+    """A law that counts its calls."""
+
+    calls = 0
+
+    def __call__(self, t: float, q: Any, qd: Any) -> Any:
+        self.calls += 1
+        return -0.1 * qd
+
+
+def test_a_notebook_waits_for_no_long_second_run_and_calls_no_function_of_ones_own() -> None:
+    law = Counted()
+    own = simulate(SWINGING.replace(effects=[pc.effects.User(law)]), store="end")
     long = simulate(SWINGING, store="end", t_span=(0, 400), method="dopri5", rtol=1e-12)
-    before = len(calls)
+    before = law.calls
     for run in (own, long):
         lines, title = thumbnail(run)
         assert len(lines) == 1
         assert title == "the chain at one time"
-    assert len(calls) == before
+    assert law.calls == before
+
+
+def test_times_that_were_kept_close_together_are_drawn_without_a_second_run() -> None:
+    law, t = Counted(), np.linspace(0, 10, 3001)
+    run = simulate(SWINGING.replace(effects=[pc.effects.User(law)]), t_eval=t)
+    before = law.calls
+    assert np.array_equal(run.plot(axes(1))[0].get_xdata(), t)
+    assert law.calls == before
 
 
 @pytest.mark.parametrize("steps", [{"store": "dense"}, {"store": "end"}])
@@ -84,29 +99,15 @@ def test_chords_are_not_seen_where_links_are_fast(steps: dict[str, Any]) -> None
     run = simulate(SWINGING, qd0=48.0, t_span=(0, 60), method="taylor", **steps)
     assert run.stats.accepted > 1000
     for what in ("phase", "path"):
-        line = run.plot(axes(), what=what)[0]
-        count = len(line.get_xdata())
-        assert count > 60 * 48 / 0.05
+        assert len(run.plot(axes(), what=what)[0].get_xdata()) > 60 * 48 / 0.05
     (path, *_), title = thumbnail(run)
     assert re.search(r"the path of its tip in the last [0-9.]+ s$", title)
     center = (path.min(axis=0) + path.max(axis=0)) / 2
     radius = np.hypot(*(path - center).T).max()
     middles = np.hypot(*((path[1:] + path[:-1]) / 2 - center).T)
     assert middles.min() > 0.99 * radius - 0.2
-    film = stage(run, trace=1.0)
-    trace = np.array(film.show(60)[0].get_data()).T
+    trace = np.array(stage(run, trace=1.0).show(60)[0].get_data()).T
     assert np.hypot(*((trace[1:] + trace[:-1]) / 2).T).min() > 0.99
-
-
-def test_times_that_were_kept_close_together_are_drawn_without_a_second_run() -> None:
-    calls = []
-    counted = pc.effects.User(function=lambda t, q, qd: calls.append(t) or -0.1 * qd)
-    scene = SWINGING.replace(effects=[counted])
-    t = np.linspace(0, 10, 3001)
-    run = simulate(scene, t_eval=t)
-    before = len(calls)
-    assert np.array_equal(run.plot(axes(1))[0].get_xdata(), t)
-    assert len(calls) == before
 
 
 def test_a_swing_kept_where_it_turns_is_not_taken_for_rest() -> None:
@@ -117,24 +118,8 @@ def test_a_swing_kept_where_it_turns_is_not_taken_for_rest() -> None:
     assert np.ptp(kept.plot(axes(1))[0].get_ydata()) > 100  # deg
 
 
+TIMES = {"free_bodies": {"t": 0.5}}
 SENTENCE = r"^t: this solution keeps no dense output: simulate with store=\"dense\"; "
-
-
-def sentence_of(run: pc.Solution) -> str:
-    with pytest.raises(ValueError, match="keeps no dense output") as refused:
-        run(0.5)
-    return str(refused.value)
-
-
-def draws(run: pc.Solution, folder: Path) -> dict[str, Callable[[], object]]:
-    found: dict[str, Callable[[], object]] = {
-        what: lambda what=what: run.plot(axes(1), what=what)
-        for what in ("angles", "rates", "reactions", "energy", "path", "phase", "strip")
-    }
-    found["free_bodies"] = lambda: run.plot(axes(1), what="free_bodies", t=0.5)
-    found["film"] = lambda: run.to_video(folder / "run.gif")
-    found["animation"] = lambda: run.animate()
-    return found
 
 
 def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_path: Path) -> None:
@@ -142,10 +127,21 @@ def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_
     moody = pc.effects.User(function=lambda t, q, qd: -damping[0] * qd)
     run = simulate(SWINGING.replace(effects=[moody]), t_eval=[0.0, 5.0, 10.0])
     damping[0] = 0.2
-    for draw in draws(run, tmp_path).values():
+    figures = ("angles", "rates", "reactions", "energy", "path", "phase", "strip", "free_bodies")
+    draws: list[Callable[[], object]] = [
+        lambda: run.to_video(tmp_path / "run.gif"),
+        lambda: run.animate(),
+        *(
+            lambda what=what: run.plot(axes(1), what=what, **TIMES.get(what, {}))
+            for what in figures
+        ),
+    ]
+    for draw in draws:
         with pytest.raises(ValueError, match=SENTENCE + "simulated anew .* takes another course"):
             draw()
-    with pytest.raises(ValueError, match=re.escape(sentence_of(run))):
+    with pytest.raises(ValueError, match="keeps no dense output") as refused:
+        run(0.5)
+    with pytest.raises(ValueError, match=re.escape(str(refused.value))):
         html.page_of(run)
     assert not [*tmp_path.iterdir()]
 
@@ -167,11 +163,11 @@ def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(
 
 def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(TEXTBOOK, store="end")
-    degree = simulate(TEXTBOOK)._run.dense_degree
-    monkeypatch.setattr(dense_output, "MOST_BYTES", 8 * run.stats.accepted * 4 * (degree + 1) - 1)
+    needed = 8 * run.stats.accepted * 4 * (simulate(TEXTBOOK)._run.dense_degree + 1)
+    monkeypatch.setattr(dense_output, "MOST_BYTES", needed - 1)
     with pytest.raises(ValueError, match=SENTENCE + "it would take .* GiB"):
         run.plot(axes(2))
-    monkeypatch.setattr(dense_output, "MOST_BYTES", 8 * run.stats.accepted * 4 * (degree + 1))
+    monkeypatch.setattr(dense_output, "MOST_BYTES", needed)
     run.plot(axes(2))
 
 

@@ -10,7 +10,7 @@ import pendcore as pc
 import pytest
 from pendcore.cli import main
 from pendcore.films.stage import Stage
-from runs_that_kept_little import BOUNCING, RUNS, STOP, axes, few, places, simulate, stage
+from runs_that_kept_little import BOUNCING, RESTING, RUNS, STOP, axes, few, places, simulate, stage
 
 
 @pytest.fixture(params=RUNS)
@@ -33,35 +33,43 @@ def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.So
     film = stage(kept, reactions=True, trace=np.inf)
     low, high = sorted([dense._run.arguments["t_start"], dense._run.t_reached])
     at = np.clip(film.times, low, high)
-    state = dense(at)
-    n = len(kept.scene.links)
-    q, qd = np.ascontiguousarray(state[:n].T), np.ascontiguousarray(state[n:].T)
-    true, forces = kept.scene._compiled.positions(at, q), kept.scene._compiled.reactions(at, q, qd)
+    true, forces = places(dense, at), reactions(dense, at)
+    n = len(dense.scene.links)
     for k in range(0, len(at), 7):
-        trace, chain, arrows = film.show(k)[:3]
+        trace, chain, arrows, *sizes = film.show(k)[: 3 + n]
         assert np.abs(np.array(chain.get_data()).T - true[k]).max() < 1e-12
         drawn = np.stack([arrows.U, arrows.V], axis=-1)
         assert drawn / np.abs(drawn).max() == pytest.approx(
             forces[k] / np.abs(forces[k]).max(), abs=1e-9
         )
+        assert np.abs(arrows.get_offsets() - true[k, :-1]).max() < 1e-12
+        assert [x.get_text() for x in sizes] == [f" {np.hypot(*one):.3g} N" for one in forces[k]]
         assert np.abs(np.array(trace.get_data())[:, -1] - true[k, -1]).max() < 1e-12
 
 
-def test_no_frame_shows_a_rod_beyond_its_stop() -> None:
-    kept = few(BOUNCING)
-    film = stage(kept)
-    shown = np.array([film.show(k)[1].get_data() for k in range(len(film.times))])
-    angle = np.arctan2(shown[:, 1, 1], shown[:, 0, 1])
-    assert angle.max() <= STOP + 1e-9
-    assert (angle > STOP - 0.1).any()
-    assert np.rad2deg(STOP) + 1e-7 >= kept.plot(axes(2))[0].get_ydata().max() > np.rad2deg(1.8)
+def test_no_frame_and_no_curve_shows_a_rod_beyond_its_stop() -> None:
+    for kept in (few(BOUNCING), simulate(RESTING)):
+        film = stage(kept)
+        shown = np.array([film.show(k)[1].get_data() for k in range(len(film.times))])
+        angle = np.arctan2(shown[:, 1, 1], shown[:, 0, 1])
+        assert angle.max() <= STOP + 1e-9
+        assert (angle > STOP - 0.1).any()
+    assert angle[-1] == angle[-40]  # it rests to the end
+    curve = few(BOUNCING).plot(axes(2))[0].get_ydata()
+    assert np.rad2deg(STOP) + 1e-7 >= curve.max() > np.rad2deg(1.8)
+
+
+def angles_and_rates(run: pc.Solution, t: Any) -> Any:
+    return (np.ascontiguousarray(half.T) for half in np.split(run(t), 2))
+
+
+def reactions(run: pc.Solution, t: Any) -> Any:
+    return run.scene._compiled.reactions(t, *angles_and_rates(run, t))
 
 
 def values(what: str, run: pc.Solution, t: Any) -> list[Any]:
     """Return what the curves of a figure have to be, from dense output and the scene alone."""
-    state = run(t)
-    n = len(run.scene.links)
-    q, qd = np.ascontiguousarray(state[:n].T), np.ascontiguousarray(state[n:].T)
+    q, qd = angles_and_rates(run, t)
     if what == "angles":
         return [*np.rad2deg(q.T)]
     if what == "rates":
@@ -69,7 +77,7 @@ def values(what: str, run: pc.Solution, t: Any) -> list[Any]:
     if what == "energy":
         kinetic, potential = run.scene._compiled.energy(t, q, qd)
         return [kinetic, potential, kinetic + potential]
-    forces = np.moveaxis(run.scene._compiled.reactions(t, q, qd), 1, 0)
+    forces = np.moveaxis(reactions(run, t), 1, 0)
     return [x for one in forces for x in (one[:, 0], one[:, 1], np.hypot(*one.T))]
 
 
@@ -91,8 +99,7 @@ def test_paths_phases_and_poses_are_the_dense_output(kept: str, tmp_path: Path) 
     t = run.plot(axes(2))[0].get_xdata()
     (path,) = run.plot(axes(), what="path")
     assert np.abs(np.array(path.get_data()).T - places(dense, t)[:, -1]).max() < 1e-12
-    first, second = run.plot(axes(), what="phase")
-    for i, line in enumerate((first, second)):
+    for i, line in enumerate(run.plot(axes(), what="phase")):
         assert np.array_equal(line.get_xdata(), dense(t)[i])
         assert np.array_equal(line.get_ydata(), dense(t)[2 + i])
     at = np.array([0.35, 3.7, 9.9])
@@ -110,9 +117,8 @@ def test_the_ledger_is_drawn_between_the_times_that_were_kept() -> None:
     lines = {line.get_label(): line for line in kept.plot(axes(2), what="energy")}
     ledger = at_steps.energy().ledger
     assert ledger is not None
-    t = at_steps.t[np.diff(at_steps.t, append=np.inf) > 0]
-    entry = ledger["impact"][np.diff(at_steps.t, append=np.inf) > 0]
-    drawn = lines["impact (lost)"]
+    is_last = np.diff(at_steps.t, append=np.inf) > 0  # of those at one time
+    t, entry, drawn = at_steps.t[is_last], ledger["impact"][is_last], lines["impact (lost)"]
     shared = np.isin(t, drawn.get_xdata())
     assert shared.sum() > 50
     at = np.searchsorted(drawn.get_xdata(), t[shared])
@@ -134,10 +140,7 @@ def test_a_case_that_keeps_few_times_is_shown_as_it_moves(
         return found
 
     monkeypatch.setattr(Stage, "show", show)
-    out = tmp_path / "case.gif"
-    assert (
-        main(["show", str(tmp_path / "case.toml"), "-o", str(out), "--fps", "4", "--speed", "2"])
-        == 0
-    )
+    monkeypatch.chdir(tmp_path)
+    assert main(["show", "case.toml", "-o", "case.gif", "--fps", "4", "--speed", "2"]) == 0
     times, chains = zip(*shown, strict=True)
     assert np.abs(np.array(chains) - places(simulate(BOUNCING), np.array(times))).max() < 1e-12

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from pendcore._figures.axes import as_drawn
 from pendcore.films.stage import Choices, Stage
@@ -20,20 +21,13 @@ def sol() -> pc.Solution:
     return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 0.5))
 
 
-def pixels(figure: Figure) -> Any:
-    figure.draw_without_rendering()
-    canvas: Any = figure.canvas
+def drawn(text: str, **properties: Any) -> Any:
+    """Return the pixels of a text."""
+    figure = Figure(figsize=(3, 0.5))
+    canvas = FigureCanvasAgg(figure)
+    figure.text(0.1, 0.3, text, **properties)
     canvas.draw()
     return np.array(canvas.buffer_rgba())
-
-
-def drawn(text: str, **properties: Any) -> Any:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    figure = Figure(figsize=(3, 0.5))
-    FigureCanvasAgg(figure)
-    figure.text(0.1, 0.3, text, **properties)
-    return pixels(figure)
 
 
 @pytest.mark.parametrize("text", UNREADABLE)
@@ -62,8 +56,7 @@ def test_a_film_shows_the_name_of_every_run(sol: pc.Solution) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_a_figure_shows_its_label(sol: pc.Solution, what: Any, name: str) -> None:
     figure = Figure()
-    count = {"angles": 2, "reactions": 2}.get(what, 1)
-    axes = figure.subplots(count, 1)
+    axes = figure.subplots(2 if what in ("angles", "reactions") else 1, 1)
     sol.plot(axes, what=what, label=name)
     for axis in figure.axes:
         legend = axis.get_legend()

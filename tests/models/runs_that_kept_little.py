@@ -19,6 +19,13 @@ BOUNCING = TEXTBOOK.replace(
         pc.effects.ViscousJoint(joint=2, damping=0.05),
     ]
 )
+RESTING = pc.Scene(
+    links=[pc.Link(mass=1.0, length=1.0)],
+    effects=[
+        pc.effects.JointStop(joint=1, range=(-1.0, STOP), restitution=0.4),
+        pc.effects.DryJointFriction(joint=1, coulomb=0.6),
+    ],
+)
 SWINGING = pc.Scene(links=[pc.Link.point_mass(mass=1.0, length=1.0)])
 BOTTOM = pc.events.LinkAngle(1, np.pi / 2, terminal=True)
 
@@ -38,73 +45,65 @@ def few(scene: pc.Scene, **options: Any) -> pc.Solution:
     return simulate(scene, t_eval=np.linspace(first, last, 11), **options)
 
 
-def loaded(run: pc.Solution, folder: Path) -> Any:
-    run.save(folder / "run.npz")
+Pair = tuple[Callable[[Path], pc.Solution], Callable[[], pc.Solution]]
+
+
+def alike(scene: pc.Scene, keep: dict[str, Any] | None = None, **options: Any) -> Pair:
+    """Return what makes a run that keeps eleven times, or what `keep` says, and the dense run."""
+    if keep is None:
+        return lambda _: few(scene, **options), lambda: simulate(scene, **options)
+    return lambda _: simulate(scene, **options, **keep), lambda: simulate(scene, **options)
+
+
+def loaded(folder: Path) -> pc.Solution:
+    few(BOUNCING).save(folder / "run.npz")
     return pc.load(folder / "run.npz")
 
 
-def member(**options: Any) -> pc.Solution:
-    starts = np.array([[1.8, 2.5], [1.9, 2.5]])
-    return pc.ensemble(TEXTBOOK, q0=starts, t_span=(0, 10), on_failure="ignore", **options).member(
-        0
-    )
+def member(_: Path) -> pc.Solution:
+    starts, times = np.array([[1.8, 2.5], [1.9, 2.5]]), np.linspace(0, 10, 11)
+    return pc.ensemble(TEXTBOOK, (0, 10), starts, keep="times", t_eval=times).member(0)
 
 
-RUNS: dict[str, tuple[Callable[[Path], pc.Solution], Callable[[], pc.Solution]]] = {
-    "times": (lambda _: few(TEXTBOOK), lambda: simulate(TEXTBOOK)),
-    "one time": (lambda _: simulate(TEXTBOOK, t_eval=[7.0]), lambda: simulate(TEXTBOOK)),
-    "end": (lambda _: simulate(TEXTBOOK, store="end"), lambda: simulate(TEXTBOOK)),
-    "steps": (lambda _: simulate(TEXTBOOK, store="steps"), lambda: simulate(TEXTBOOK)),
-    "backward": (
-        lambda _: few(TEXTBOOK, t_span=(10, 0)),
-        lambda: simulate(TEXTBOOK, t_span=(10, 0)),
-    ),
-    "stop": (lambda _: few(BOUNCING), lambda: simulate(BOUNCING)),
-    "loaded": (lambda folder: loaded(few(BOUNCING), folder), lambda: simulate(BOUNCING)),
-    "ledger": (
-        lambda _: simulate(BOUNCING, store="end", ledger=True),
-        lambda: simulate(BOUNCING),
-    ),
-    "member": (
-        lambda _: member(keep="times", t_eval=np.linspace(0, 10, 11)),
-        lambda: simulate(TEXTBOOK),
-    ),
-    "event": (
-        lambda _: few(TEXTBOOK, events=[BOTTOM]),
-        lambda: simulate(TEXTBOOK, events=[BOTTOM]),
-    ),
+def resumed_twice(run: pc.Solution) -> pc.Solution:
+    return run.resume(10.0).resume(10.0)
+
+
+def resumed_after_a_break(run: pc.Solution) -> pc.Solution:
+    return run.resume(10.0, max_steps=30, on_failure="ignore")
+
+
+EVENT, BREAK = {"events": [BOTTOM]}, {"max_steps": 40}
+RUNS: dict[str, Pair] = {
+    "dense": alike(TEXTBOOK, {}),
+    "times": alike(TEXTBOOK),
+    "one time": alike(TEXTBOOK, {"t_eval": [7.0]}),
+    "end": alike(TEXTBOOK, {"store": "end"}),
+    "steps": alike(TEXTBOOK, {"store": "steps"}),
+    "backward": alike(TEXTBOOK, t_span=(10, 0)),
+    "stop": alike(BOUNCING),
+    "at rest on its stop": alike(RESTING, {}),
+    "loaded": (loaded, lambda: simulate(BOUNCING)),
+    "ledger": alike(BOUNCING, {"store": "end", "ledger": True}),
+    "member": (member, lambda: simulate(TEXTBOOK)),
+    "event": alike(TEXTBOOK, **EVENT),
     "resumed past events": (
-        lambda _: few(TEXTBOOK, events=[BOTTOM]).resume(10.0).resume(10.0),
-        lambda: simulate(TEXTBOOK, events=[BOTTOM]).resume(10.0).resume(10.0),
+        lambda _: resumed_twice(few(TEXTBOOK, **EVENT)),
+        lambda: resumed_twice(simulate(TEXTBOOK, **EVENT)),
     ),
     "resumed to a later end": (
         lambda _: simulate(TEXTBOOK, store="end", t_span=(0, 4)).resume(10.0),
         lambda: simulate(TEXTBOOK),
     ),
-    "broken off": (
-        lambda _: few(BOUNCING, max_steps=40),
-        lambda: simulate(BOUNCING, max_steps=40),
-    ),
+    "broken off": alike(BOUNCING, **BREAK),
     "resumed after a break": (
-        lambda _: few(BOUNCING, max_steps=40).resume(10.0, max_steps=30, on_failure="ignore"),
-        lambda: simulate(BOUNCING, max_steps=40).resume(10.0, max_steps=30, on_failure="ignore"),
+        lambda _: resumed_after_a_break(few(BOUNCING, **BREAK)),
+        lambda: resumed_after_a_break(simulate(BOUNCING, **BREAK)),
     ),
-    "broken off before its first step": (
-        lambda _: simulate(TEXTBOOK, t_eval=[3.0, 4.0], time_limit=1e-9),
-        lambda: simulate(TEXTBOOK, time_limit=1e-9),
-    ),
-    "fixed steps": (
-        lambda _: few(TEXTBOOK, method="rk4", step=0.01),
-        lambda: simulate(TEXTBOOK, method="rk4", step=0.01),
-    ),
-    "stiff": (
-        lambda _: few(BOUNCING, method="radau5"),
-        lambda: simulate(BOUNCING, method="radau5"),
-    ),
-    "asked for an error": (
-        lambda _: few(TEXTBOOK, error=1e-4),
-        lambda: simulate(TEXTBOOK, error=1e-4),
-    ),
+    "broken off before its first step": alike(TEXTBOOK, {"t_eval": [3.0, 4.0]}, time_limit=1e-9),
+    "fixed steps": alike(TEXTBOOK, method="rk4", step=0.01),
+    "stiff": alike(BOUNCING, method="radau5"),
+    "asked for an error": alike(TEXTBOOK, error=1e-4),
 }
 
 
