@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -13,6 +12,7 @@ import pendcore as pc
 import pytest
 from members_and_runs import BOOK, starts
 from pendcore._ensemble.distribution import Task, run_task
+from stored_ensembles import contents, wait_for_a_chunk
 
 pytestmark = pytest.mark.unsanitized  # processes and a cluster
 
@@ -77,15 +77,11 @@ def test_a_time_limit_ends_the_whole():
 def kill_a_worker(client, path):
     """Kill one of the processes when the store has its first chunk."""
     pids = client.run(os.getpid)
-    until = time.monotonic() + 60
-    while not [*path.glob("status/c/*")] and time.monotonic() < until:
-        time.sleep(0.01)
+    wait_for_a_chunk(path)
     os.kill(next(iter(pids.values())), signal.SIGKILL)
 
 
 def test_a_cluster_makes_good_a_worker_that_dies(cluster, tmp_path):
-    from test_store import contents
-
     here, there = tmp_path / "here.zarr", tmp_path / "there.zarr"
     asked = {"t_span": (0, 3000), "chunk": 2, "on_failure": "ignore"}
     pc.ensemble(BOOK, q0=STARTS, store=here, **asked)
