@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import io
 import pickle
 
 import numpy as np
@@ -29,29 +28,29 @@ def cases(draw):
     return pc.Case(scene=scene, q0=draw(q), qd0=draw(q), t_span=span, options=options)
 
 
+def assert_comes_back(one):
+    for again in (
+        eval(repr(one), NAMES),
+        pickle.loads(pickle.dumps(one)),
+        copy.deepcopy(one),
+        one.replace(),
+    ):
+        assert again == one
+        assert hash(again) == hash(one)
+        assert repr(again) == repr(one)
+        assert type(again) is type(one)
+
+
 @pytest.mark.parametrize("kind", sorted(KINDS))
 @given(data=st.data())
 @settings(max_examples=30)
 def test_an_effect_comes_back_from_its_repr_and_from_pickle(kind, data):
-    effect = data.draw(made(KINDS[kind], 3))
-    for again in (
-        eval(repr(effect), NAMES),
-        pickle.loads(pickle.dumps(effect)),
-        copy.deepcopy(effect),
-        effect.replace(),
-    ):
-        assert again == effect
-        assert hash(again) == hash(effect)
-        assert repr(again) == repr(effect)
-        assert type(again) is KINDS[kind]
+    assert_comes_back(data.draw(made(KINDS[kind], 3)))
 
 
 @given(scenes())
 def test_a_scene_comes_back_from_its_repr_and_from_pickle(scene):
-    for again in (eval(repr(scene), NAMES), pickle.loads(pickle.dumps(scene)), scene.replace()):
-        assert again == scene
-        assert hash(again) == hash(scene)
-        assert repr(again) == repr(scene)
+    assert_comes_back(scene)
 
 
 @given(cases())
@@ -62,8 +61,8 @@ def test_a_case_comes_back_from_toml_and_from_its_repr_to_the_last_bit(case):
 
 
 @given(scenes())
-@settings(max_examples=30)
-def test_a_scene_that_came_back_moves_the_same(scene):
+@settings(max_examples=30, deadline=None)
+def test_a_scene_and_its_run_come_back_and_move_the_same(scene):
     n = len(scene.links)
     state = (0.0, np.linspace(-1, 2, n), np.linspace(1, -1, n))
     expected = scene.accelerations(*state)
@@ -71,10 +70,6 @@ def test_a_scene_that_came_back_moves_the_same(scene):
     for other in (again, pickle.loads(pickle.dumps(scene))):
         assert np.array_equal(other.accelerations(*state), expected, equal_nan=True)
 
-
-@given(scenes())
-@settings(max_examples=30, deadline=None)
-def test_a_run_comes_back_from_its_file_and_from_pickle(scene):
     times = [effect.table.t for effect in scene.effects if getattr(effect, "table", None)]
     times += [effect.spline.t for effect in scene.effects if getattr(effect, "spline", None)]
     start = max((t[0] for t in times), default=0.0)
@@ -83,8 +78,6 @@ def test_a_run_comes_back_from_its_file_and_from_pickle(scene):
         run = case.simulate()
     except ValueError:  # tables that have no time in common, a start that a lock forbids
         return
-    file = io.BytesIO(pickle.dumps(run))
-    assert pickle.load(file).case() == run.case()
+    assert pickle.loads(pickle.dumps(run)).case() == run.case()
     assert run.case().options == case.options | {"method": run.method}
-    saved = pc.Case.of_solution(run).to_toml()
-    assert pc.read_case(saved).scene == scene
+    assert pc.read_case(pc.Case.of_solution(run).to_toml()).scene == scene

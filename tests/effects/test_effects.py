@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import ctypes
 import inspect
 from dataclasses import FrozenInstanceError
 from fractions import Fraction
@@ -14,13 +13,8 @@ import pytest
 from pendcore import _core
 from pendcore import effects as fx
 
-nan, inf = float("nan"), float("inf")
-ROD = pc.Link(mass=1, length=1)
 CLASSES = {**fx.kinds()}
 SINE = fx.Sinusoid(amplitude=1.0, angular_frequency=6.0)
-FORCES = ctypes.CFUNCTYPE(
-    None, ctypes.c_double, ctypes.c_int, *3 * [ctypes.POINTER(ctypes.c_double)], ctypes.c_void_p
-)
 
 
 def test_every_kind_of_the_core_has_its_class_under_its_names():
@@ -29,6 +23,8 @@ def test_every_kind_of_the_core_has_its_class_under_its_names():
     for row in told:
         assert CLASSES[row["kind"]] is getattr(fx, row["name"])
         assert CLASSES[row["kind"]].kind == row["kind"]
+    fx.kinds().clear()  # a copy
+    assert fx.kinds() == CLASSES
 
 
 @pytest.mark.parametrize(
@@ -45,11 +41,6 @@ def test_an_unknown_effect_is_told_with_the_nearest_known_one(name, remedy):
     assert not hasattr(fx, "__path__")
 
 
-def test_kinds_can_be_changed_by_nobody():
-    fx.kinds().clear()
-    assert fx.kinds() == CLASSES
-
-
 @pytest.mark.parametrize("kind", CLASSES)
 def test_a_class_shows_its_parameters_in_signature_docstring_and_match_args(kind):
     cls = CLASSES[kind]
@@ -61,7 +52,6 @@ def test_a_class_shows_its_parameters_in_signature_docstring_and_match_args(kind
         assert f"\n{parameter.name} : " in cls.__doc__
         argument = signature.parameters[parameter.name]
         assert (argument.default is argument.empty) == parameter.required
-    assert all(len(line) <= 92 for line in cls.__doc__.splitlines())
 
 
 def test_values_come_by_place_or_by_name():
@@ -90,7 +80,7 @@ def test_arrays_are_kept_as_tuples_of_floats(make):
 
 def test_repr_shows_what_is_not_as_by_default_and_nothing_else():
     assert repr(fx.ViscousJoint(1, 0.0)) == "ViscousJoint(joint=1, damping=0.0)"
-    assert repr(fx.Motor(joint=2, sinusoid=SINE, limit=inf)) == (
+    assert repr(fx.Motor(joint=2, sinusoid=SINE, limit=np.inf)) == (
         "Motor(joint=2, sinusoid=Sinusoid(amplitude=1.0, angular_frequency=6.0))"
     )
 
@@ -105,181 +95,99 @@ def test_an_effect_cannot_be_changed_and_can_be_varied():
     assert effect.replace(sinusoid=None, constant=2.0) == fx.Motor(joint=1, constant=2.0)
     with pytest.raises(TypeError, match=r"did you mean 'joint'\?"):
         effect.replace(joints=3)
+    others = [fx.ViscousJoint(1, 0.1), fx.ViscousJoint(2, 0.1), fx.TorsionalSpring(1, 0.1)]
+    assert len({*others}) == len({*map(repr, others)}) == 3
 
 
-def test_effects_of_different_kinds_or_values_are_different():
-    effects = [fx.ViscousJoint(1, 0.1), fx.ViscousJoint(2, 0.1), fx.TorsionalSpring(1, 0.1)]
-    assert len(set(effects)) == len(effects) == len({repr(effect) for effect in effects})
+VALUES = {
+    "ViscousJoint(joint=1, damping=nan)": r"damping = nan: must be finite \(N m s/rad\)",
+    "RotorInertia(1, armature=-1)": r"armature = -1\.0: must be finite and >= 0 \(kg m\^2\)",
+    "DryJointFriction(1, 1, stribeck_velocity=0)":
+        r"stribeck_velocity = 0\.0: must be finite and > 0 \(rad/s\)",
+    "DryJointFriction(1, 1, exponent=0.5)": r"exponent = 0\.5: must be finite and >= 1$",
+    "DryJointFriction(1, 2, static=1)": r"static = 1\.0: must be at least coulomb = 2\.0 \(N m\)",
+    "Motor(1, constant=1, limit=nan)": r"limit = nan: must be > 0, inf for no limit \(N m\)",
+    "Table(t=[0, 1], torque=[1, nan])": r"torque\[1\] = nan: must be finite \(N m\)",
+    "RodDrag(1, 1, 1, wind=(inf, 0))": r"wind\[0\] = inf: must be finite \(m/s\)",
+    "RodDrag(1, 1, 1, wind=3.0)": r"wind: shape \(\): must be \(2,\), 2 numbers \(m/s\)",
+    "Table(t=[[0, 1]], torque=[1, 2])": r"t: shape \(1, 2\): must be \(k,\) \(s\)",
+    "Table(t=[0, 1, 0.5], torque=[1, 2, 3])":
+        r"t\[2\] = 0\.5: must be above the time before, 1\.0 \(s\)$",
+    "Table([0, 1, 1, 2], [0, 1, 2, 3], hold=True)":
+        r"t\[2\] = 1.0: must be above the time before, 1.0 \(s\): with hold = ",
+    "Table([0, 1, 1, 1, 2], [0, 1, 2, 3, 4])":
+        r"t\[3\] = 1.0: must be above .*: a time may stand twice, for a step",
+    "Table([0, 0, 1], [0, 1, 2])": r"t\[1\] = 0.0: must .* between",
+    "Table([0, 1, 1], [0, 1, 2])": r"t\[2\] = 1.0: must .* between",
+    "Spline([0, 1, 1], [0, 0, 0], [0, 0, 0])": r"t\[2\] = 1.0: must be above",
+    "Spline([0], [0], [0])": r"t: has 1 time",
+    "Spline([0, 1], [0, 1], [0])": r"y: has 1 value.*must have 2, one for each time",
+    "Sinusoid(inf, 1)": r"amplitude = inf: must be finite \(N m or m\)",
+    "User(print, breaks=[1, 1])": r"breaks\[1\] = 1.0: must be above the time before, 1.0 \(s\)$",
+    "User(print, breaks=[inf])": r"breaks\[0\] = inf: must be finite \(s\)$",
+    "CompiledUser(4096, breaks=[1, 0])": r"breaks\[1\] = 0.0: must be above the time before, 1.0 ",
+    "CompiledUser(0)": r"address = 0: must be the add",
+    "CompiledUser(-1)": r"address = -1: m",
+    "ViscousJoint(0, 1)": r"joint = 0: .* 1 or more",
+    "ViscousJoint(2**31, 1)": r"joint: is too l",
+    "ViscousJoint(1, 10**400)": r"damping: is to",
+    "Motor(joint=1)": r".*one of constant, sinusoid, table",
+    "Motor(1, constant=1, sinusoid=SINE)": r".*one of",
+    "DrivenPivot()": r".*give x, y or both",
+}  # fmt: skip
+TYPES = {
+    "Lock(joint=1.0)": r"joint = 1\.0: must be a whole number",
+    "Lock(joint=True)": r"joint = True: must be a whole number",
+    "ViscousJoint(1, '0.1')": r"damping = '0\.1': must be a real number \(N m s/rad\)",
+    "ViscousJoint(1, True)": r"damping = True: must",
+    "ViscousJoint(1, None)": r"damping = None: must",
+    "Table([0, 1], ['a', 'b'])": r"torque: holds text: must",
+    "Table([0, 1], [0, 1], hold=1)": r"hold = 1: must be True or False$",
+    "Motor(1, sinusoid=5)": r"sinusoid = 5: must be a pendcore\.effects\.Sinusoid",
+    "Motor(1, sinusoid=PD(1, 2, 3))":
+        r"sinusoid = PD\(.*\): must be a pendcore\.effects\.Sinusoid",
+    "ViscousJoint(joint=1, dampings=0.1)": r"has no parameter 'dampings': did you mean 'damping'\?",
+    "Lock(joint=1, colour=0.1)": r"has no parameter 'colour': known are joint, angle",
+    "ViscousJoint(joint=1)": r"damping is missing: .*\(N m s/rad\)",
+    "Lock(1, joint=1)": r"joint is given twice",
+    "Lock(1, 2, 3)": r"takes joint, angle.* given 3 values",
+    "User(5)": r"function = 5: must be a function of t",
+    "CompiledUser('f')": r"address = 'f': must be an address, a ctypes function or a numba cfunc",
+}  # fmt: skip
+NAMES = {**vars(fx), "nan": np.nan, "inf": np.inf, "SINE": SINE}
 
 
-MISTAKES = {
-    "not finite": (
-        lambda: fx.ViscousJoint(joint=1, damping=nan),
-        ValueError,
-        r"ViscousJoint: damping = nan: must be finite \(N m s/rad\)",
-    ),
-    "negative": (
-        lambda: fx.RotorInertia(1, armature=-1),
-        ValueError,
-        r"RotorInertia: armature = -1\.0: must be finite and >= 0 \(kg m\^2\)",
-    ),
-    "zero": (
-        lambda: fx.DryJointFriction(1, 1, stribeck_velocity=0),
-        ValueError,
-        r"DryJointFriction: stribeck_velocity = 0\.0: must be finite and > 0 \(rad/s\)",
-    ),
-    "below one": (
-        lambda: fx.DryJointFriction(1, 1, exponent=0.5),
-        ValueError,
-        r"DryJointFriction: exponent = 0\.5: must be finite and >= 1$",
-    ),
-    "at odds": (
-        lambda: fx.DryJointFriction(1, 2, static=1),
-        ValueError,
-        r"DryJointFriction: static = 1\.0: must be at least coulomb = 2\.0 \(N m\)",
-    ),
-    "limit": (
-        lambda: fx.Motor(1, constant=1, limit=nan),
-        ValueError,
-        r"Motor: limit = nan: must be > 0, inf for no limit \(N m\)",
-    ),
-    "in a list": (
-        lambda: fx.Table(t=[0, 1], torque=[1, nan]),
-        ValueError,
-        r"Table: torque\[1\] = nan: must be finite \(N m\)",
-    ),
-    "in a pair": (
-        lambda: fx.RodDrag(1, 1, 1, wind=(inf, 0)),
-        ValueError,
-        r"RodDrag: wind\[0\] = inf: must be finite \(m/s\)",
-    ),
-    "no pair": (
-        lambda: fx.RodDrag(1, 1, 1, wind=3.0),
-        ValueError,
-        r"RodDrag: wind: shape \(\): must be \(2,\), 2 numbers \(m/s\)",
-    ),
-    "no list": (
-        lambda: fx.Table(t=[[0, 1]], torque=[1, 2]),
-        ValueError,
-        r"Table: t: shape \(1, 2\): must be \(k,\) \(s\)",
-    ),
-    "times backward": (
-        lambda: fx.Table(t=[0, 1, 0.5], torque=[1, 2, 3]),
-        ValueError,
-        r"Table: t\[2\] = 0\.5: must be above the time before, 1\.0 \(s\)",
-    ),
-    "a single time": (lambda: fx.Spline([0], [0], [0]), ValueError, r"Spline: t: has 1 time"),
-    "too few values": (
-        lambda: fx.Spline([0, 1], [0, 1], [0]),
-        ValueError,
-        r"Spline: y: has 1 value.*must have 2, one for each time",
-    ),
-    "joint zero": (
-        lambda: fx.ViscousJoint(0, 1),
-        ValueError,
-        r"ViscousJoint: joint = 0: .* 1 or more",
-    ),
-    "joint huge": (lambda: fx.ViscousJoint(2**31, 1), ValueError, r"ViscousJoint: joint: is too l"),
-    "no law": (lambda: fx.Motor(joint=1), ValueError, r"Motor: .*one of constant, sinusoid, table"),
-    "two laws": (lambda: fx.Motor(1, constant=1, sinusoid=SINE), ValueError, r"Motor: .*one of"),
-    "no motion": (lambda: fx.DrivenPivot(), ValueError, r"DrivenPivot: .*give x, y or both"),
-    "joint a float": (
-        lambda: fx.Lock(joint=1.0),
-        TypeError,
-        r"Lock: joint = 1\.0: must be a whole number",
-    ),
-    "joint a truth": (lambda: fx.Lock(joint=True), TypeError, r"Lock: joint = True: must be a who"),
-    "text": (
-        lambda: fx.ViscousJoint(1, "0.1"),
-        TypeError,
-        r"ViscousJoint: damping = '0\.1': must be a real number \(N m s/rad\)",
-    ),
-    "truth": (lambda: fx.ViscousJoint(1, True), TypeError, r"ViscousJoint: damping = True: must"),
-    "none": (lambda: fx.ViscousJoint(1, None), TypeError, r"ViscousJoint: damping = None: must"),
-    "texts": (lambda: fx.Table([0, 1], ["a", "b"]), TypeError, r"Table: torque: holds text: must"),
-    "too large": (lambda: fx.ViscousJoint(1, 10**400), ValueError, r"ViscousJoint: damping: is to"),
-    "no part": (
-        lambda: fx.Motor(1, sinusoid=5),
-        TypeError,
-        r"Motor: sinusoid = 5: must be a pendcore\.effects\.Sinusoid",
-    ),
-    "another part": (
-        lambda: fx.Motor(1, sinusoid=fx.PD(1, 2, 3)),
-        TypeError,
-        r"Motor: sinusoid = PD\(.*\): must be a pendcore\.effects\.Sinusoid",
-    ),
-    "misspelt": (
-        lambda: fx.ViscousJoint(joint=1, dampings=0.1),
-        TypeError,
-        r"ViscousJoint: has no parameter 'dampings': did you mean 'damping'\?",
-    ),
-    "unknown": (
-        lambda: fx.Lock(joint=1, colour=0.1),
-        TypeError,
-        r"Lock: has no parameter 'colour': known are joint, angle",
-    ),
-    "missing": (
-        lambda: fx.ViscousJoint(joint=1),
-        TypeError,
-        r"ViscousJoint: damping is missing: .*\(N m s/rad\)",
-    ),
-    "twice": (lambda: fx.Lock(1, joint=1), TypeError, r"Lock: joint is given twice"),
-    "too many": (lambda: fx.Lock(1, 2, 3), TypeError, r"Lock: takes joint, angle.* given 3 values"),
-    "a sine that is none": (
-        lambda: fx.Sinusoid(inf, 1),
-        ValueError,
-        r"Sinusoid: amplitude = inf: must be finite \(N m or m\)",
-    ),
-    "no function": (lambda: fx.User(5), TypeError, r"User: function = 5: must be a function of t"),
-    "null": (lambda: fx.CompiledUser(0), ValueError, r"CompiledUser: address = 0: must be the add"),
-    "no address": (
-        lambda: fx.CompiledUser("f"),
-        TypeError,
-        r"CompiledUser: address = 'f': must be an address, a ctypes function or a numba cfunc",
-    ),
-    "negative address": (lambda: fx.CompiledUser(-1), ValueError, r"CompiledUser: address = -1: m"),
-}
+@pytest.mark.every_value("call")
+@pytest.mark.parametrize("call", [*VALUES, *TYPES])
+def test_a_mistake_is_told_with_class_parameter_value_and_remedy(call):
+    name, error = call.partition("(")[0], TypeError if call in TYPES else ValueError
+    with pytest.raises(error, match=f"^{name}: {(VALUES | TYPES)[call]}"):
+        eval(call, NAMES)
 
 
-@pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_told_with_class_parameter_value_and_remedy(mistake):
-    make, kind, message = MISTAKES[mistake]
-    with pytest.raises(kind, match=f"^{message}"):
-        make()
+RODS = [pc.Link(mass=1, length=1)] * 2
+STOPS = r"effect 2 \(joint_stop\): range = .*: must overlap .* joint 1"
+NO_LIST = r"must be a list of pendcore\.effects"
+NO_PLACE = [
+    ([fx.Lock(1), fx.ViscousJoint(3, 1)], r"effect 2 \(viscous_joint\): joint = 3: must be 1 to 2"),
+    ([fx.Lock(1), fx.RodDrag(5, 1, 1)], r"effect 2 \(rod_drag\): link = 5: must be 1 to 2"),
+    ([fx.Lock(1), fx.Lock(1)], r"effect 2 \(lock\): joint 1 is locked already"),
+    ([fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(0.5, 1))], STOPS),
+    ([fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(0.0, 1))], STOPS),
+]
+NO_EFFECTS = [
+    (fx.Lock(1), rf"effects = Lock\(joint=1\): {NO_LIST}"),
+    (5, r"effects = 5: must be a list"),
+    ([fx.Lock(1), "drag"], rf"effect 2 = 'drag': {NO_LIST}"),
+    ([SINE], rf"effect 1 = Sinusoid\(.*: {NO_LIST}"),
+    ([fx.Lock], r"effect 1 = Lock: must be a pendcore\.effects object.* got the class itself"),
+]
 
 
-@pytest.mark.parametrize(
-    ("effect", "message"),
-    [
-        (fx.ViscousJoint(3, 1), r"effect 2 \(viscous_joint\): joint = 3: must be 1 to 2"),
-        (fx.RodDrag(5, 1, 1), r"effect 2 \(rod_drag\): link = 5: must be 1 to 2"),
-        (fx.Lock(1), r"effect 2 \(lock\): joint 1 is locked already"),
-    ],
-)
-def test_a_scene_refuses_what_its_chain_has_no_place_for(effect, message):
-    with pytest.raises(ValueError, match=f"^{message}"):
-        pc.Scene(links=[ROD, ROD], effects=[fx.Lock(1), effect])
-
-
-@pytest.mark.parametrize("lowest", [0.5, 0.0])
-def test_a_scene_refuses_stops_that_leave_a_joint_no_room(lowest):
-    stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(lowest, 1))]
-    message = rf"effect 2 \(joint_stop\): range = \({lowest}, 1.0\): must overlap .* joint 1"
-    with pytest.raises(ValueError, match=f"^{message}"):
-        pc.Scene(links=[ROD, ROD], effects=stops)
-    assert pc.Scene(links=[ROD], effects=[stops[0], fx.JointStop(1, range=(-0.5, 1))])
-
-
-@pytest.mark.parametrize(
-    ("effects", "message"),
-    [
-        (fx.Lock(1), r"effects = Lock\(joint=1\): must be a list of pendcore\.effects"),
-        (5, r"effects = 5: must be a list"),
-        ([fx.Lock(1), "drag"], r"effect 2 = 'drag': must be a list of pendcore\.effects"),
-        ([SINE], r"effect 1 = Sinusoid\(.*: must be a list of pendcore\.effects"),
-        ([fx.Lock], r"effect 1 = Lock: must be a pendcore\.effects object.* got the class itself"),
-    ],
-)
-def test_what_is_no_list_of_effects_is_refused(effects, message):
-    with pytest.raises(TypeError, match=f"^{message}"):
-        pc.Scene(links=[ROD], effects=effects)
+def test_a_scene_refuses_what_its_chain_has_no_place_for_and_what_is_no_effect():
+    for error, table in ((ValueError, NO_PLACE), (TypeError, NO_EFFECTS)):
+        for effects, message in table:
+            with pytest.raises(error, match=f"^{message}"):
+                pc.Scene(links=RODS, effects=effects)
+    stops = [fx.JointStop(1, range=(-1, 0)), fx.JointStop(1, range=(-0.5, 1))]
+    assert pc.Scene(links=RODS, effects=stops)

@@ -28,7 +28,6 @@ TOLERANCE = 1e-12
 FORTY = multiple_precision(40)
 ROUNDING_OF_THE_REFERENCE = 1e-36
 KINDS = sorted(pc.effects.kinds())
-some = settings(max_examples=30, deadline=None)
 
 short, long = st.sampled_from([1, 2, 3]), st.integers(4, 10)
 
@@ -85,10 +84,11 @@ def test_every_kind_of_effect_has_a_law_in_the_reference() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@some
+@settings(max_examples=30, deadline=None)
 @given(data=st.data())
-def test_an_effect_alone(kind: str, data: st.DataObject) -> None:
+def test_an_effect_alone_and_on_a_moving_pivot(kind: str, data: st.DataObject) -> None:
     check_instant(data.draw(rigs([kind], short)))
+    check_instant(data.draw(rigs(sorted({kind, "driven_pivot"}), short)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -98,33 +98,21 @@ def test_an_effect_alone_on_a_long_chain(kind: str, data: st.DataObject) -> None
     check_instant(data.draw(rigs([kind], long)))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@some
-@given(data=st.data())
-def test_an_effect_on_a_moving_pivot(kind: str, data: st.DataObject) -> None:
-    check_instant(data.draw(rigs(sorted({kind, "driven_pivot"}), short)))
+@pytest.mark.parametrize(
+    ("kinds", "links", "count"),
+    [
+        ([kind for kind in KINDS if kind != "lock"], short, 60),
+        (KINDS, short, 60),
+        (KINDS, long, 20),
+        ([], short | long, 50),
+    ],
+    ids=["all but locks", "all", "all on a long chain", "none"],
+)
+def test_effects_together(kinds: list[str], links: st.SearchStrategy[int], count: int) -> None:
+    settings(max_examples=count, deadline=None)(given(rigs(kinds, links))(check_instant))()
 
 
-@pytest.mark.parametrize("but", ["lock", None])
-@settings(max_examples=60, deadline=None)
-@given(data=st.data())
-def test_all_effects_together(but: str | None, data: st.DataObject) -> None:
-    check_instant(data.draw(rigs([kind for kind in KINDS if kind != but], short)))
-
-
-@settings(max_examples=20, deadline=None)
-@given(rigs(KINDS, long))
-def test_all_effects_together_on_a_long_chain(drawn: DrawnRig) -> None:
-    check_instant(drawn)
-
-
-@settings(max_examples=50, deadline=None)
-@given(rigs([], short | long))
-def test_no_effect_at_all(drawn: DrawnRig) -> None:
-    check_instant(drawn)
-
-
-@some
+@settings(max_examples=30, deadline=None)
 @given(rigs(["rotor_inertia", "payload", "driven_pivot"], short | long))
 def test_the_mass_matrix_holds_rotors_and_the_payload(drawn: DrawnRig) -> None:
     bodies, gravity, described, (_, q, _) = drawn
@@ -147,8 +135,7 @@ def test_many_instants_at_once(n: int) -> None:
     ]
     scene = scene_of(bodies, 9.81, described)
     t, q, qd = random.uniform(0, 1, 40), *random.uniform(-4, 4, (2, 40, n))
-    computed = scene.accelerations(t, q, qd)
     alone = [scene.accelerations(*state) for state in zip(t, q, qd, strict=True)]
-    np.testing.assert_array_equal(computed, alone)
+    np.testing.assert_array_equal(scene.accelerations(t, q, qd), alone)
     at_one_state = scene.accelerations(t, q[0], qd[0])
     np.testing.assert_array_equal(at_one_state[3], scene.accelerations(t[3], q[0], qd[0]))

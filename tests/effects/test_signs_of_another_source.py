@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import effects as fx
 
 MASS, LENGTH, CENTER, INERTIA = (1.3, 0.8), (0.7, 0.5), (0.3, 0.2), (0.05, 0.02)
 G = 9.81
@@ -17,6 +18,11 @@ TARGET = np.array([0.4, -0.3])
 """The angles psi at which springs and controllers rest, rad."""
 PSI, PSI_DOT = np.array([0.9, -1.4]), np.array([1.1, -2.0])
 THETA = np.cumsum(PSI)
+CONVENTIONS = {
+    "from x": -THETA,
+    "from hanging": pc.angles_from_vertical(THETA + np.pi / 2),
+    "from upright": pc.angles_from_vertical(THETA - np.pi / 2, zero="upright"),
+}
 
 
 def arm(torques: np.ndarray) -> np.ndarray:
@@ -34,50 +40,29 @@ def arm(torques: np.ndarray) -> np.ndarray:
     return np.linalg.solve([[d11, d12], [d12, m2 * c2**2 + i2]], torques - rest)
 
 
-def from_x(theta):
-    return -theta
-
-
-def from_hanging(theta):
-    return pc.angles_from_vertical(theta + np.pi / 2)
-
-
-def from_upright(theta):
-    return pc.angles_from_vertical(theta - np.pi / 2, zero="upright")
-
-
-PD = pc.effects.PD
-FREE = np.zeros(2)
-STIFF = -KP * (PSI - TARGET)
-DAMPED = -KD * PSI_DOT
-TURNED = from_x(TARGET)  # joint 1 from +x; joint 2 is relative, and has the same minus
+PULLED = -KP * (PSI - TARGET) - KD * PSI_DOT
+# Joint 1 from +x; joint 2 is relative, and has the same minus.
+RESTS = [(1, -TARGET[0]), (2, -TARGET[1])]
 CASES = {
     "constant": (
         np.array([2.5, -1.7]),
-        [pc.effects.Motor(joint=1, constant=-2.5), pc.effects.Motor(joint=2, constant=1.7)],
+        [fx.Motor(joint=1, constant=-2.5), fx.Motor(joint=2, constant=1.7)],
     ),
     "controller": (
-        STIFF + DAMPED,
-        [
-            pc.effects.Motor(joint=1, pd=PD(kp=KP, kd=KD, reference=TURNED[0])),
-            pc.effects.Motor(joint=2, pd=PD(kp=KP, kd=KD, reference=TURNED[1])),
-        ],
+        PULLED,
+        [fx.Motor(joint, pd=fx.PD(kp=KP, kd=KD, reference=rest)) for joint, rest in RESTS],
     ),
     "spring and damper": (
-        STIFF + DAMPED,
-        [
-            pc.effects.TorsionalSpring(joint=1, stiffness=KP, rest_angle=TURNED[0]),
-            pc.effects.TorsionalSpring(joint=2, stiffness=KP, rest_angle=TURNED[1]),
-            pc.effects.ViscousJoint(joint=1, damping=KD),
-            pc.effects.ViscousJoint(joint=2, damping=KD),
-        ],
+        PULLED,
+        [fx.TorsionalSpring(joint, stiffness=KP, rest_angle=rest) for joint, rest in RESTS]
+        + [fx.ViscousJoint(joint, damping=KD) for joint in (1, 2)],
     ),
     # A torque from the ground on the second link turns both of the arm's angles.
-    "from the ground": (np.array([1.9, 1.9]), [pc.effects.User(lambda t, q, qd: [0.0, -1.9])]),
+    "from the ground": (np.array([1.9, 1.9]), [fx.User(lambda t, q, qd: [0.0, -1.9])]),
 }
 
 
-@pytest.mark.parametrize("convention", [from_x, from_hanging, from_upright])
+@pytest.mark.parametrize("convention", CONVENTIONS)
 @pytest.mark.parametrize("case", CASES)
 def test_what_turns_an_arm_counter_clockwise_has_a_minus_here(case, convention):
     torques, effects = CASES[case]
@@ -86,6 +71,6 @@ def test_what_turns_an_arm_counter_clockwise_has_a_minus_here(case, convention):
         for m, length, c, i in zip(MASS, LENGTH, CENTER, INERTIA, strict=True)
     ]
     scene = pc.Scene(links=links, gravity=G, effects=effects)
-    qdd = scene.accelerations(0.0, convention(THETA), -np.cumsum(PSI_DOT))
-    assert not np.allclose(arm(torques), arm(FREE), rtol=0.1)
+    qdd = scene.accelerations(0.0, CONVENTIONS[convention], -np.cumsum(PSI_DOT))
+    assert not np.allclose(arm(torques), arm(np.zeros(2)), rtol=0.1)
     np.testing.assert_allclose(-np.diff(qdd, prepend=0.0), arm(torques), rtol=1e-12)

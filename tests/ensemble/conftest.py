@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+
+import pendcore as pc
 import pytest
+from stored_ensembles import ASKED, BOOK, STARTS, TIMES, make
 
 
 @pytest.fixture(scope="module")
@@ -16,3 +20,31 @@ def cluster():
         distributed.Client(cluster) as client,
     ):
         yield client
+
+
+@pytest.fixture(scope="session")
+def plain():
+    return pc.ensemble(BOOK, q0=STARTS, **ASKED)
+
+
+@pytest.fixture(scope="session")
+def stored(tmp_path_factory):
+    """A whole store, which no test may change."""
+    path = tmp_path_factory.mktemp("store") / "whole.zarr"
+    make(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def timed(tmp_path_factory):
+    """The same with states at times."""
+    path = tmp_path_factory.mktemp("store") / "times.zarr"
+    make(path, **TIMES)
+    return path
+
+
+@pytest.fixture
+def copied(tmp_path, stored):
+    """A store to be damaged."""
+    shutil.copytree(stored, tmp_path / "a.zarr")
+    return tmp_path / "a.zarr"

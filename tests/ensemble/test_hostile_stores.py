@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import pickle
@@ -12,9 +13,10 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.cli import main
-from test_store import ASKED, BOOK, STARTS, contents
+from stored_ensembles import make
 
 pytest.importorskip("zarr", exc_type=ImportError)
+NO_STORE = r"a\.zarr': is no store of an ensemble"
 
 
 class RunsCode:
@@ -25,21 +27,6 @@ class RunsCode:
 
     def __reduce__(self):
         return os.mkdir, (self.mark,)
-
-
-@pytest.fixture(scope="module")
-def stored(tmp_path_factory):
-    path = tmp_path_factory.mktemp("store") / "whole.zarr"
-    times = {"keep": "times", "t_eval": [0.5, 1.0]}
-    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **(ASKED | times | {"t_span": (0, 1)}))
-    return path
-
-
-@pytest.fixture(scope="module")
-def reduced(tmp_path_factory):
-    path = tmp_path_factory.mktemp("store") / "reduced.zarr"
-    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
-    return path
 
 
 @pytest.fixture
@@ -61,74 +48,80 @@ def write(path, told):
     path.write_text(json.dumps(told))
 
 
-@pytest.mark.usefixtures("unpickling")
-def test_zarr_itself_would_run_the_code(tmp_path):
-    """Otherwise the tests below show nothing."""
-    import zarr
-
-    mark = hostile_group(tmp_path)
-    with pytest.raises(Exception, match=r".*"):
-        zarr.open_group(tmp_path / "hostile.zarr", mode="r")["time"][...]
-    assert mark.exists()
-
-
-def hostile_group(tmp_path):
-    """Make a group of Zarr 2, and return what is there when its code has run."""
-    path, mark = tmp_path / "hostile.zarr", tmp_path / "code ran"
-    write(path / ".zgroup", {"zarr_format": 2})
-    write(path / ".zattrs", {"shape": [1], "block_shape": [1]})
-    write(path / "time" / ".zattrs", {})
-    write(path / "time" / ".zarray", V2_ARRAY)
-    (path / "time" / "0").write_bytes(pickle.dumps(RunsCode(mark)))
-    return mark
+def hide_code(array, mark):
+    """Write an array of Zarr 2 that makes a file when it is read."""
+    write(array / ".zattrs", {})
+    write(array / ".zarray", V2_ARRAY)
+    (array / "0").write_bytes(pickle.dumps(RunsCode(mark)))
 
 
 @pytest.mark.usefixtures("unpickling")
 def test_no_code_runs_from_a_group_of_zarr_2(tmp_path):
-    mark = hostile_group(tmp_path)
-    with pytest.raises(ValueError, match=r"hostile\.zarr': is no store of an ensemble"):
-        pc.load(tmp_path / "hostile.zarr")
-    with pytest.raises(ValueError, match=r"hostile\.zarr': is no store of an ensemble"):
-        pc.ensemble(BOOK, q0=STARTS, store=tmp_path / "hostile.zarr", **ASKED)
+    import zarr
+
+    path, mark = tmp_path / "a.zarr", tmp_path / "code ran"
+    write(path / ".zgroup", {"zarr_format": 2})
+    write(path / ".zattrs", {"shape": [1], "block_shape": [1]})
+    hide_code(path / "time", mark)
+    for read in (pc.load, make):
+        with pytest.raises(ValueError, match=NO_STORE):
+            read(path)
     assert not mark.exists()
+    with pytest.raises(Exception, match=r".*"):
+        zarr.open_group(path, mode="r")["time"][...]
+    assert mark.exists()  # Zarr itself runs the code: else this shows nothing
 
 
 @pytest.mark.usefixtures("unpickling")
 @pytest.mark.parametrize("name", ["time", "q0", "q", "status"])
 @pytest.mark.parametrize("where", ["beside", "instead", "consolidated"])
-def test_no_code_runs_from_an_array_of_zarr_2_in_a_store(tmp_path, stored, name, where):
-    path, mark = tmp_path / "hostile.zarr", tmp_path / "code ran"
-    shutil.copytree(stored, path)
-    write(path / name / ".zarray", V2_ARRAY)
-    write(path / name / ".zattrs", {})
-    (path / name / "0").write_bytes(pickle.dumps(RunsCode(mark)))
+def test_no_code_runs_from_an_array_of_zarr_2_in_a_store(tmp_path, timed, name, where):
+    path, mark = tmp_path / "a.zarr", tmp_path / "code ran"
+    shutil.copytree(timed, path)
+    hide_code(path / name, mark)
     if where == "instead":
         (path / name / "zarr.json").unlink()
-    if where == "consolidated":
-        told = json.loads((path / "zarr.json").read_text())
-        told["consolidated_metadata"]["metadata"][name] = V2_ARRAY
-        write(path / "zarr.json", told)
-    if where == "instead":
         with pytest.raises(ValueError, match=f"{name}/zarr.json is missing"):
             pc.load(path).q  # noqa: B018
     else:
+        if where == "consolidated":
+            told = json.loads((path / "zarr.json").read_text())
+            told["consolidated_metadata"]["metadata"][name] = V2_ARRAY
+            write(path / "zarr.json", told)
         found = pc.load(path)
-        found.q, found.codes  # noqa: B018
-        assert np.array_equal(found.q, pc.load(stored).q)
+        assert np.array_equal(found.q, pc.load(timed).q)
+        assert found.codes.shape == (6, 9)
     assert not mark.exists()
 
 
-@pytest.mark.parametrize("name", ["time", "q0", "q", "gravity"])
-@pytest.mark.parametrize("codec", ["numcodecs.pickle", "gzip", "sharding_indexed"])
-def test_a_codec_that_is_not_ours_is_refused_before_zarr_sees_it(tmp_path, stored, name, codec):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    told = json.loads((path / name / "zarr.json").read_text())
-    told["codecs"][1] = {"name": codec, "configuration": {}}
-    write(path / name / "zarr.json", told)
-    refused = f"{name}/zarr.json: codecs = .*: must be of bytes, vlen-utf8, zstd: others may run"
-    with pytest.raises(ValueError, match=refused):
-        pc.load(path)
+def parts(key):
+    return [int(part) if part.isdigit() else part for part in key.split("/")] if key else []
+
+
+def part_of(told, key):
+    for one in parts(key):
+        told = told[one]
+    return told
+
+
+def changed(told, key, value):
+    """Return a document with another value at a place such as chunk_grid/configuration."""
+    if not key:
+        return value
+    told = copy.deepcopy(told)
+    *first, last = parts(key)
+    owner = told
+    for one in first:
+        owner = owner[one]
+    owner[last] = value
+    return told
+
+
+def change(document, **values):
+    told = json.loads(document.read_text())
+    for key, value in values.items():
+        told = changed(told, key, value)
+    write(document, told)
 
 
 WRONG = [None, True, 5, -1, 1.5, "text", [], [1], ["text"], [0], {}, {"x": 1}, {"x": ["Extremes"]}]
@@ -146,138 +139,47 @@ ARRAY = [
     "codecs/1/configuration", "codecs/1/configuration/level", "chunk_key_encoding/configuration",
     "codecs/0/configuration",
 ]  # fmt: skip
+ARCHIVED = ["pendcore", "case", "keep", "vary", "shape", "axes", "axes/q0", "axes/q0/0", "ending",
+            "statistics", "keep/over", "keep/over/1", "vary/0", "shape/0"]  # fmt: skip
 FREE = {
     "pendcore": ["text"], "keep": [{}], "vary": [[]], "fill_value": WRONG, "statistics": [{}],
     "codecs/0/configuration": WRONG, "codecs/1/configuration": WRONG,
     "codecs/1/configuration/level": WRONG, "chunk_key_encoding/configuration": WRONG,
 }  # fmt: skip
 """What may have these values as well: they do not tell that the file was changed."""
+PLACES = [("", key) for key in ["", *GROUP]] + [
+    (name, key)
+    for name in ("q0", "gravity", "q", "status")
+    for key in ["", *ARRAY]
+    if (name, key) != ("status", "codecs/0/configuration")  # bytes have no order
+]
 
 
-def whole_of(told, keys):
-    for key in keys:
-        told = told[int(key) if isinstance(told, list) else key]
-    return told
-
-
-def cases():
-    for key in ["", *GROUP]:
-        yield "", key
-    for name in ("q0", "gravity", "q", "status"):
-        for key in ["", *ARRAY]:
-            if not (name == "status" and key == "codecs/0/configuration"):  # bytes have no order
-                yield name, key
-
-
-@pytest.mark.parametrize(("name", "key"), [*cases()])
-def test_every_wrong_kind_of_every_attribute_is_told_in_one_sentence(tmp_path, reduced, name, key):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(reduced, path)
-    document = path / name / "zarr.json"
+@pytest.mark.parametrize(("name", "key"), PLACES)
+def test_every_wrong_kind_of_every_attribute_is_told_in_one_sentence(copied, name, key):
+    document = copied / name / "zarr.json"
     whole = json.loads(document.read_text())
-    *first, last = key.split("/")
-    before = whole_of(whole, key.split("/")) if key else whole
     for value in WRONG:
-        if value == before:
+        if value == part_of(whole, key):
             continue
-        told = json.loads(json.dumps(whole))
-        if key:
-            owner = whole_of(told, first)
-            owner[int(last) if isinstance(owner, list) else last] = value
-        write(document, told if key else value)
+        write(document, changed(whole, key, value))
         try:
-            pc.load(path)
+            pc.load(copied)
         except ValueError as error:
             told_of = str(error)
         else:
             assert value in FREE.get(key.removeprefix("attributes/"), []), value
             continue
-        assert "a.zarr': is no store of an ensemble" in told_of
+        assert re.search(NO_STORE, told_of)
         assert "\n" not in told_of, value
         assert len(told_of) < 600, value
         assert re.search(r"zarr\.json|pendcore|case|keep|vary|shape|codec", told_of), told_of
 
 
-@pytest.mark.parametrize("content", [b"", b"null", b"{", b"\xff", b"[" * 100_000, b'{"a":' * 9999])
-@pytest.mark.parametrize("name", ["", "q"])
-def test_a_description_that_is_none_is_told(tmp_path, stored, name, content):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    (path / name / "zarr.json").write_bytes(content)
-    with pytest.raises(
-        ValueError, match=r"a\.zarr': is no store of an ensemble, or is damaged .*js"
-    ):
-        pc.load(path)
-
-
-@pytest.mark.parametrize("name", ["time", "q0", "gravity", "q", "status", "over"])
-def test_an_array_that_is_missing_is_named(tmp_path, stored, reduced, name):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(reduced if name == "over" else stored, path)
-    if name == "time":
-        shutil.rmtree(path / name)
-    else:
-        (path / name / "zarr.json").unlink()
-    told = "q/zarr.json: " if name == "time" else f"{name}/zarr.json is missing"
-    with pytest.raises(ValueError, match=told):
-        pc.load(path)
-
-
-@pytest.mark.parametrize("name", ["../q", "/q", "a/../../q", "C:q", "\\q"])
-def test_the_name_of_a_reducer_does_not_lead_out_of_a_store(tmp_path, reduced, name):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(reduced, path)
-    told = json.loads((path / "zarr.json").read_text())
-    told["attributes"]["keep"] = {name: ["EnergyDrift"]}
-    write(path / "zarr.json", told)
-    with pytest.raises(ValueError, match=r"is no name of a reducer|reducers and events"):
-        pc.load(path)
-
-
-@pytest.mark.parametrize(
-    ("shape", "count"), [([10**6, 10**6], "1,000,000,000,000"), ([2, 10**20], "200,[0,]*")]
-)
-def test_more_blocks_than_a_folder_holds_are_refused(shape, count, tmp_path, stored):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    told = json.loads((path / "zarr.json").read_text())
-    told["attributes"] |= {"shape": shape, "block_shape": [1, 1]}
-    write(path / "zarr.json", told)
-    with pytest.raises(ValueError, match=rf"makes {count} blocks: must make at most 262,"):
-        pc.load(path)
-
-
-def test_a_description_of_boundless_size_is_not_read(tmp_path, stored, monkeypatch):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    with (path / "zarr.json").open("r+b") as file:
-        file.truncate(2**40)  # a file with a hole: it takes no room
-    with pytest.raises(ValueError, match=r"zarr\.json: has 1,\S+ bytes: must have at most"):
-        pc.load(path)
-
-
-def test_the_command_tells_what_is_wrong_with_a_store(tmp_path, stored, capsys):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    chunk = path / "q0" / "c" / "0" / "0" / "0"
-    chunk.write_bytes(chunk.read_bytes()[:-5])
-    assert main(["plot", str(path), "-o", str(tmp_path / "a.png")]) == 2
-    told = capsys.readouterr().err
-    assert "a.zarr': its starts cannot be read" in told
-    assert "None" not in told
-    assert main(["plot", str(tmp_path / "none.npz")]) == 2
-    assert capsys.readouterr().err.endswith("none.npz: No such file or directory\n")
-    assert contents(path) != contents(stored)
-
-
-ARCHIVED = ["pendcore", "case", "keep", "vary", "shape", "axes", "axes/q0", "axes/q0/0", "ending",
-            "statistics", "keep/over", "keep/over/1", "vary/0", "shape/0"]  # fmt: skip
-
-
 @pytest.fixture(scope="module")
-def archived(tmp_path_factory):
+def archived(tmp_path_factory, plain):
     path = tmp_path_factory.mktemp("archive") / "all.npz"
-    pc.ensemble(BOOK, q0=STARTS, **ASKED).save(path)
+    plain.save(path)
     with np.load(path) as entries:
         return dict(entries)
 
@@ -286,16 +188,84 @@ def archived(tmp_path_factory):
 def test_every_wrong_kind_of_what_an_archive_tells_is_refused_in_one_sentence(
     tmp_path, archived, key
 ):
-    whole = json.loads(str(archived["ensemble"]))
-    *first, last = key.split("/")
+    whole, path = json.loads(str(archived["ensemble"])), tmp_path / "a.npz"
     for value in WRONG:
-        if value == whole_of(whole, key.split("/")) or value in FREE.get(key, []):
+        if value == part_of(whole, key) or value in FREE.get(key, []):
             continue
-        told = json.loads(json.dumps(whole))
-        owner = whole_of(told, first)
-        owner[int(last) if isinstance(owner, list) else last] = value
-        np.savez(tmp_path / "a.npz", **(archived | {"ensemble": json.dumps(told)}))
+        np.savez(path, **(archived | {"ensemble": json.dumps(changed(whole, key, value))}))
         with pytest.raises(ValueError, match=r"a\.npz: is no ensemble that pendcore saved") as said:
-            pc.load(tmp_path / "a.npz")
+            pc.load(path)
         assert "\n" not in str(said.value)
         assert "object" not in str(said.value)  # as in 'int' object has no attribute
+
+
+DOCUMENTS = [b"", b"null", b"{", b"\xff", b"[" * 100_000, b'{"a":' * 9999]
+
+
+@pytest.mark.parametrize("name", ["", "q"])
+def test_a_description_that_is_none_is_told(copied, name):
+    document = copied / name / "zarr.json"
+    for content in DOCUMENTS:
+        document.write_bytes(content)
+        with pytest.raises(ValueError, match=NO_STORE + ", or is damaged .*js"):
+            pc.load(copied)
+
+
+@pytest.mark.parametrize("name", ["time", "q0", "q", "gravity"])
+@pytest.mark.parametrize("codec", ["numcodecs.pickle", "gzip", "sharding_indexed"])
+def test_a_codec_that_is_not_ours_is_refused_before_zarr_sees_it(tmp_path, timed, name, codec):
+    path = tmp_path / "a.zarr"
+    shutil.copytree(timed, path)
+    change(path / name / "zarr.json", **{"codecs/1": {"name": codec, "configuration": {}}})
+    refused = f"{name}/zarr.json: codecs = .*: must be of bytes, vlen-utf8, zstd: others may run"
+    with pytest.raises(ValueError, match=refused):
+        pc.load(path)
+
+
+@pytest.mark.parametrize("name", ["q0", "gravity", "q", "status", "over"])
+def test_an_array_that_is_missing_is_named(copied, name):
+    (copied / name / "zarr.json").unlink()
+    with pytest.raises(ValueError, match=f"{name}/zarr.json is missing"):
+        pc.load(copied)
+
+
+def test_times_that_are_missing_are_told(tmp_path, timed):
+    shutil.copytree(timed, tmp_path / "a.zarr")
+    shutil.rmtree(tmp_path / "a.zarr" / "time")
+    with pytest.raises(ValueError, match=r"q/zarr\.json: "):
+        pc.load(tmp_path / "a.zarr")
+
+
+@pytest.mark.parametrize("name", ["../q", "/q", "a/../../q", "C:q", "\\q"])
+def test_the_name_of_a_reducer_does_not_lead_out_of_a_store(copied, name):
+    change(copied / "zarr.json", **{"attributes/keep": {name: ["EnergyDrift"]}})
+    with pytest.raises(ValueError, match=r"is no name of a reducer|reducers and events"):
+        pc.load(copied)
+
+
+@pytest.mark.parametrize(
+    ("shape", "count"), [([10**6, 10**6], "1,000,000,000,000"), ([2, 10**20], "200,[0,]*")]
+)
+def test_more_blocks_than_a_folder_holds_are_refused(shape, count, copied):
+    blocks = {"attributes/shape": shape, "attributes/block_shape": [1, 1]}
+    change(copied / "zarr.json", **blocks)
+    with pytest.raises(ValueError, match=rf"makes {count} blocks: must make at most 262,"):
+        pc.load(copied)
+
+
+def test_a_description_of_boundless_size_is_not_read(copied):
+    with (copied / "zarr.json").open("r+b") as file:
+        file.truncate(2**40)  # a file with a hole: it takes no room
+    with pytest.raises(ValueError, match=r"zarr\.json: has 1,\S+ bytes: must have at most"):
+        pc.load(copied)
+
+
+def test_the_command_tells_what_is_wrong_with_a_store(copied, tmp_path, capsys):
+    chunk = copied / "q0" / "c" / "0" / "0" / "0"
+    chunk.write_bytes(chunk.read_bytes()[:-5])
+    assert main(["plot", str(copied), "-o", str(tmp_path / "a.png")]) == 2
+    told = capsys.readouterr().err
+    assert "a.zarr': its starts cannot be read" in told
+    assert "None" not in told
+    assert main(["plot", str(tmp_path / "none.npz")]) == 2
+    assert capsys.readouterr().err.endswith("none.npz: No such file or directory\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from time import monotonic, sleep
 
 import numpy as np
@@ -12,9 +12,10 @@ import pendcore as pc
 import pytest
 from pendcore._ensemble import store as store_module
 from pendcore._ensemble.distribution import Task, run_task
-from test_store import ASKED, BOOK, STARTS, contents, pool_of
+from stored_ensembles import BOOK, STARTS, chunks, contents, make, pool_of
 
 pytest.importorskip("zarr", exc_type=ImportError)
+GONE = r"a\.zarr': is no longer there"
 
 
 def move(path):
@@ -36,9 +37,18 @@ def empty(path):
 
 def replace(path):
     move(path)
-    pc.ensemble(
-        BOOK, q0=STARTS + 0.1, store=path, chunk=7, time_limit=1e-9, on_failure="ignore", **ASKED
-    )
+    make(path, q0=STARTS + 0.1, time_limit=1e-9, on_failure="ignore")
+
+
+def block(path):
+    if (path / "extremes" / "c").exists():
+        (path / "extremes" / "c").rename(path / "c")
+    (path / "extremes" / "c").touch()
+
+
+def forbid(path):
+    for folder in [path, *(one for one in path.rglob("*") if one.is_dir())]:
+        folder.chmod(0o500)
 
 
 def once(done, path):
@@ -52,11 +62,11 @@ def once(done, path):
     return report
 
 
-@pytest.fixture(scope="module")
-def stored(tmp_path_factory):
-    path = tmp_path_factory.mktemp("store") / "whole.zarr"
-    pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
-    return path
+def assert_told(path, lost, kind=None, told=GONE, **how):
+    """Lose a store that is being written; return what has been done."""
+    with pool_of(kind) as pool, pytest.raises(OSError, match=told) as error:
+        make(path, progress=once(lost, path), executor=pool, **how)
+    return error.value.ensemble
 
 
 @pytest.mark.unsanitized
@@ -65,64 +75,41 @@ def stored(tmp_path_factory):
 def test_a_store_that_goes_while_it_is_written_is_told_and_made_by_nobody(tmp_path, lost, kind):
     path = tmp_path / "folder" / "a.zarr"
     path.parent.mkdir()
-    how = {"store": path, "chunk": 7, "on_failure": "ignore"} | ASKED
-    with pool_of(kind) as pool, pytest.raises(OSError, match=r"a\.zarr': is no longer there: it w"):
-        pc.ensemble(BOOK, q0=STARTS, progress=once(lost, path), executor=pool, **how)
+    assert_told(path, lost, kind, told=GONE + ": it w", on_failure="ignore")
     if lost not in (remove, empty):  # which take their time, in which a worker may write on
         assert not path.exists()
-
-
-def test_what_a_worker_raises_can_be_pickled_with_its_causes(tmp_path, stored):
-    """Dask pickles the causes of an exception as well, and cannot read all of Zarr's."""
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    found = pc.load(path)
-    shutil.rmtree(path / "q")
-    block = (slice(0, 7),)
-    with pytest.raises(OSError, match="is no longer there") as raised:
-        run_task(Task(pc.__version__, found.members, found.request, 1, path, block))
-    assert raised.value.__cause__ is raised.value.__context__ is None
 
 
 @pytest.mark.unsanitized
 @pytest.mark.parametrize("kind", [None, "processes"])
 def test_a_store_that_is_put_back_loses_nothing(tmp_path, stored, kind):
-    path = tmp_path / "a.zarr"
-    how = {"store": path, "chunk": 7} | ASKED
-    with pool_of(kind) as pool, pytest.raises(OSError, match="is no longer there") as told:
-        pc.ensemble(BOOK, q0=STARTS, progress=once(move, path), executor=pool, **how)
-    moved = tmp_path / "elsewhere.zarr"
-    done = len([*moved.glob("status/c/*/*")])
-    assert done >= 2
+    path, moved = tmp_path / "a.zarr", tmp_path / "elsewhere.zarr"
+    left = assert_told(path, move, kind)
+    assert len(chunks(moved, "status")) >= 2
     moved.rename(path)
-    assert told.value.ensemble.counts()["not_run"] < len(STARTS) * 9
-    fractions = []
-    pc.ensemble(BOOK, q0=STARTS, progress=fractions.append, **how)
+    assert left.counts()["not_run"] < 54
+    make(path)
     assert contents(path) == contents(stored)
 
 
 @pytest.mark.unsanitized
 def test_a_store_that_goes_while_a_cluster_writes_it_is_told(tmp_path, cluster):
     path = tmp_path / "a.zarr"
-    how = {"store": path, "chunk": 7} | ASKED
-    with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, q0=STARTS, progress=once(move, path), executor=cluster, **how)
+    with pytest.raises(OSError, match=GONE):
+        make(path, progress=once(move, path), executor=cluster)
     until = monotonic() + 10  # nobody can wait for a worker of a cluster that takes its file back
     while path.exists() and monotonic() < until:
         sleep(0.01)
     assert not path.exists()
 
 
-def test_nothing_is_written_into_a_store_that_took_the_place(tmp_path, stored):
-    path = tmp_path / "a.zarr"
-    with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, progress=once(replace, path), **ASKED)
+def test_nothing_is_written_into_a_store_that_took_the_place(tmp_path):
+    assert_told(tmp_path / "a.zarr", replace)
     with pytest.warns(pc.PendcoreWarning, match="54 of 54 members were not run"):
-        assert pc.load(path).counts() == {"not_run": 54}
+        assert pc.load(tmp_path / "a.zarr").counts() == {"not_run": 54}
 
 
 def test_what_was_written_beside_a_store_that_has_just_gone_is_taken_back(tmp_path, monkeypatch):
-    path = tmp_path / "a.zarr"
     named = store_module.named
 
     @contextmanager
@@ -132,16 +119,15 @@ def test_what_was_written_beside_a_store_that_has_just_gone_is_taken_back(tmp_pa
             yield
 
     monkeypatch.setattr(store_module, "named", gone_before_the_write)
-    with pytest.raises(OSError, match="is no longer there"):
-        pc.ensemble(BOOK, q0=STARTS, store=path, chunk=7, **ASKED)
+    with pytest.raises(OSError, match=GONE):
+        make(tmp_path / "a.zarr")
     assert [one.name for one in tmp_path.iterdir()] == ["elsewhere.zarr"]
 
 
 def test_another_current_folder_changes_nothing(tmp_path, stored, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "other").mkdir()
-    to_other = once(lambda path: os.chdir(path), tmp_path / "other")
-    pc.ensemble(BOOK, q0=STARTS, store="a.zarr", chunk=7, progress=to_other, **ASKED)
+    make("a.zarr", progress=once(os.chdir, tmp_path / "other"))
     assert contents(tmp_path / "a.zarr") == contents(stored)
     assert not [*(tmp_path / "other").iterdir()]
 
@@ -153,71 +139,55 @@ def test_a_file_that_goes_while_a_store_is_written_is_told_and_made_anew(
     tmp_path, stored, name, kind
 ):
     path = tmp_path / "a.zarr"
-    how = {"store": path, "chunk": 7} | ASKED
-
-    def remove_one(path):
-        min(one for one in path.glob(f"{name}/c/**/*") if one.is_file()).unlink()
-
     told = rf"files of 7 of 54 members are gone, the first of them is {name}/c/[0-9/]+: some"
-    with pool_of(kind) as pool, pytest.raises(OSError, match=told):
-        pc.ensemble(BOOK, q0=STARTS, progress=once(remove_one, path), executor=pool, **how)
-    pc.ensemble(BOOK, q0=STARTS, **how)
+    assert_told(path, lambda path: chunks(path, name)[0].unlink(), kind, told=told)
+    make(path)
     assert contents(path) == contents(stored)
 
 
 @pytest.mark.parametrize("name", ["status", "q", "extremes"])
-def test_a_file_that_is_missing_is_told_by_load_and_made_anew(tmp_path, stored, name):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    *_, first, last = sorted(one for one in path.glob(f"{name}/c/**/*") if one.is_file())
+def test_a_file_that_is_missing_is_told_by_load_and_made_anew(copied, stored, name):
+    *_, first, last = chunks(copied, name)
     first.unlink()
     last.unlink()
-    told = f"of 54 members .* missing, the first of them is {first.relative_to(path)}: repeat"
+    told = f"of 54 members .* missing, the first of them is {first.relative_to(copied)}: repeat"
     with pytest.warns(pc.PendcoreWarning, match=told):
-        assert pc.load(path).ending == "interrupted"
-    pc.ensemble(BOOK, q0=STARTS, store=path, **ASKED)
-    assert contents(path) == contents(stored)
+        assert pc.load(copied).ending == "interrupted"
+    make(copied)
+    assert contents(copied) == contents(stored)
 
 
-def test_an_array_of_a_store_that_was_moved_is_not_nan(tmp_path, stored):
-    path = tmp_path / "a.zarr"
-    shutil.copytree(stored, path)
-    found = pc.load(path)
-    move(path)
-    with pytest.raises(OSError, match=r"a\.zarr': is no longer there"):
+def test_what_a_worker_raises_can_be_pickled_with_its_causes(copied):
+    """Dask pickles the causes of an exception as well, and cannot read all of Zarr's."""
+    found = pc.load(copied)
+    shutil.rmtree(copied / "q")
+    with pytest.raises(OSError, match="is no longer there") as raised:
+        run_task(Task(pc.__version__, found.members, found.request, 1, copied, (slice(0, 7),)))
+    assert raised.value.__cause__ is raised.value.__context__ is None
+
+
+def test_an_array_of_a_store_that_was_moved_is_not_nan(copied):
+    found = pc.load(copied)
+    move(copied)
+    with pytest.raises(OSError, match=GONE):
         found.q  # noqa: B018
 
 
 def test_a_chunk_of_nothing_but_nan_is_written_as_well(tmp_path):
     """A missing file would else mean two things: no event in a whole block, and a lost block."""
     never = pc.reducers.FirstEvent(pc.events.LinkAngle(2, 1e6, every_turn=False))
-    path = tmp_path / "a.zarr"
-    found = pc.ensemble(BOOK, q0=STARTS, t_span=(0, 1), store=path, chunk=7, keep=never)
+    how = {"t_span": (0, 1), "store": tmp_path / "a.zarr", "chunk": 7, "keep": never}
+    found = pc.ensemble(BOOK, q0=STARTS, **how)
     assert np.isnan(found["first_event"]).all()
-    assert np.isnan(pc.load(path)["first_event"]).all()  # and load warns of nothing
+    assert np.isnan(pc.load(tmp_path / "a.zarr")["first_event"]).all()  # and load warns of nothing
 
 
-def block(path):
-    (path / "extremes" / "c").rename(path / "c") if (path / "extremes" / "c").exists() else None
-    (path / "extremes" / "c").touch()
-
-
-def forbid(path):
-    for folder in [path, *(one for one in path.rglob("*") if one.is_dir())]:
-        folder.chmod(0o500)
+root_may = pytest.mark.skipif(os.geteuid() == 0, reason="root may")
 
 
 @pytest.mark.parametrize("kind", [None, "threads"])
-@pytest.mark.parametrize(
-    "lost",
-    [block, pytest.param(forbid, marks=pytest.mark.skipif(os.geteuid() == 0, reason="root may"))],
-)
+@pytest.mark.parametrize("lost", [block, pytest.param(forbid, marks=root_may)])
 def test_a_store_that_cannot_be_written_any_more_is_told(tmp_path, lost, kind):
-    path = tmp_path / "a.zarr"
-    how = {"store": path, "chunk": 7} | ASKED
-    with (
-        pool_of(kind) if kind else nullcontext() as pool,
-        pytest.raises(OSError, match=r"the same call goes on with it: '.*a\.zarr'") as told,
-    ):
-        pc.ensemble(BOOK, q0=STARTS, progress=once(lost, path), executor=pool, **how)
-    assert 0 < told.value.ensemble.counts()["not_run"] < 54
+    told = r"the same call goes on with it: '.*a\.zarr'"
+    left = assert_told(tmp_path / "a.zarr", lost, kind, told=told)
+    assert 0 < left.counts()["not_run"] < 54

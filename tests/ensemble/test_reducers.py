@@ -5,20 +5,25 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
+from members_and_runs import BOOK, starts
 
-BOOK = pc.Scene.textbook()
-E = pc.effects
+E, R = pc.effects, pc.reducers
 SCENES = {
     "bare": BOOK,
     "damped": BOOK.replace(effects=[E.ViscousJoint(joint=2, damping=0.1)]),
     "motor": BOOK.replace(effects=[E.Motor(joint=1, sinusoid=E.Sinusoid(3.0, 6.0))]),
-    "stop": BOOK.replace(effects=[E.JointStop(joint=2, range=(-2.0, 2.0), restitution=0.5)]),
     "three links": BOOK.replace(links=[*BOOK.links, pc.Link(mass=0.5, length=0.6)]),
+    "one link": pc.Scene(links=[pc.Link(mass=1.0, length=0.7)]),
+    "stop": BOOK.replace(effects=[E.JointStop(joint=2, range=(-2.0, 2.0), restitution=0.5)]),
 }
+SMOOTH = [name for name in SCENES if name != "stop"]
 
 
-def starts(count, n):
-    return pc.sampling.uniform(-0.9, 0.9, (count, n), seed=4)
+def reduced(scene, q0, keep, **asked):
+    """Return an ensemble with a reducer, which changes no bit of the motion."""
+    found = pc.ensemble(scene, q0=q0, keep=keep, **asked)
+    assert np.array_equal(found.q, pc.ensemble(scene, q0=q0, **asked).q)
+    return found
 
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
@@ -27,11 +32,9 @@ def test_extremes_are_those_of_the_dense_output(name, method):
     scene = SCENES[name]
     if method == "taylor" and name == "stop":
         method = "dopri5-radau5"
-    q0 = starts(4, len(scene.links))
+    q0 = starts(4, len(scene.links), 4, 0.9)
     asked = {"t_span": (0, 3), "method": method, "rtol": 1e-5}
-    found = pc.ensemble(scene, q0=q0, keep=pc.reducers.Extremes(), **asked)
-    plain = pc.ensemble(scene, q0=q0, **asked)
-    assert np.array_equal(found.q, plain.q)
+    found = reduced(scene, q0, R.Extremes(), **asked)
     for i, start in enumerate(q0):
         sol = pc.simulate(scene, q0=start, **asked)
         t = np.unique(np.concatenate([np.linspace(0, 3, 300_001), sol.t]))
@@ -45,9 +48,7 @@ def test_extremes_are_those_of_the_dense_output(name, method):
 
 def test_extremes_end_with_the_event_that_ends_the_run():
     top = pc.events.RateZero(link=1, terminal=True)
-    found = pc.ensemble(
-        BOOK, q0=[0.5, 1.0], t_span=(0, 9), events=[top], keep=pc.reducers.Extremes()
-    )
+    found = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 9), events=[top], keep=R.Extremes())
     assert found.status == "event"
     assert found["extremes"][1, 0] == pytest.approx(float(found.q[0]), abs=1e-12)
 
@@ -55,121 +56,86 @@ def test_extremes_end_with_the_event_that_ends_the_run():
 @pytest.mark.parametrize("name", SCENES)
 def test_the_energy_drift_is_that_of_the_run(name):
     scene = SCENES[name]
-    q0 = starts(4, len(scene.links))
+    q0 = starts(4, len(scene.links), 4, 0.9)
     asked = {"t_span": (0, 3), "rtol": 1e-6}
-    found = pc.ensemble(scene, q0=q0, keep=pc.reducers.EnergyDrift(), **asked)
-    plain = pc.ensemble(scene, q0=q0, **asked)
-    assert np.array_equal(found.q, plain.q)
+    found = reduced(scene, q0, R.EnergyDrift(), **asked)
     for i, start in enumerate(q0):
-        sol = pc.simulate(scene, q0=start, ledger=bool(scene.effects), **asked)
-        energy = sol.energy()
+        energy = pc.simulate(scene, q0=start, ledger=bool(scene.effects), **asked).energy()
         drift = energy.total - energy.total[0] if energy.ledger is None else energy.ledger.residual
         assert found["energy_drift"][i] == pytest.approx(np.abs(drift).max(), rel=1e-6, abs=1e-13)
         assert found["energy_drift"][i] > 0
 
 
-@pytest.mark.parametrize("name", ["bare", "damped", "motor", "three links"])
+@pytest.mark.parametrize("name", SMOOTH)
 def test_the_largest_exponent_is_that_of_lyapunov(name):
     scene = SCENES[name]
-    q0 = starts(3, len(scene.links))
-    found = pc.ensemble(scene, q0=q0, t_span=(0, 8), keep=pc.reducers.LargestExponent())
+    q0 = starts(3, len(scene.links), 4, 0.9)
+    found = reduced(scene, q0, R.LargestExponent(), t_span=(0, 8))
     for i, start in enumerate(q0):
         alone = pc.lyapunov(scene, q0=start, t_span=(0, 8), count=1, t_eval=[8.0])
         assert found["largest_exponent"][i] == alone.largest
-    assert np.array_equal(found.q, pc.ensemble(scene, q0=q0, t_span=(0, 8)).q)
 
 
 def test_a_scene_without_exponents_is_refused():
+    how = {"q0": [0.1, 0.1], "t_span": (0, 1), "keep": R.LargestExponent()}
     with pytest.raises(ValueError, match="remove dry friction and stops"):
-        pc.ensemble(
-            SCENES["stop"], q0=[0.1, 0.1], t_span=(0, 1), keep=pc.reducers.LargestExponent()
-        )
-    with pytest.raises(
-        TypeError, match=r"rtol: must be one number with pc.reducers.LargestExponent"
-    ):
-        pc.ensemble(
-            BOOK, q0=[0.1, 0.1], t_span=(0, 1), rtol=[1e-6] * 4, keep=pc.reducers.LargestExponent()
-        )
+        pc.ensemble(SCENES["stop"], **how)
+    with pytest.raises(TypeError, match=r"rtol: must be one number with pc.reducers.LargestExp"):
+        pc.ensemble(BOOK, **how, rtol=[1e-6] * 4)
 
 
 @pytest.mark.parametrize("workers", [1, 3])
-def test_several_reducers_at_once(workers):
-    first = pc.reducers.FirstEvent(pc.events.RateZero(link=1))
+def test_several_reducers_at_once_have_the_numbers_of_each_alone(workers):
     keep = {
-        "first": first,
-        "span": pc.reducers.Extremes(),
-        "drift": pc.reducers.EnergyDrift(),
-        "again": pc.reducers.EnergyDrift(),
-        "second": pc.reducers.FirstEvent(pc.events.RateZero(link=2)),
+        "first": R.FirstEvent(pc.events.RateZero(link=1)),
+        "span": R.Extremes(),
+        "drift": R.EnergyDrift(),
+        "again": R.EnergyDrift(),
+        "exponent": R.LargestExponent(),
+        "second": R.FirstEvent(pc.events.RateZero(link=2)),
     }
-    q0 = starts(6, 2)
-    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 3), keep=keep, workers=workers)
+    q0 = starts(6, 2, 4, 0.9)
+    q0[5, 0] = np.nan  # is not run, and has no numbers
+    how = {"q0": q0, "t_span": (0, 3), "workers": workers, "on_failure": "ignore"}
+    found = pc.ensemble(BOOK, keep=keep, **how)
     for name, one in keep.items():
-        alone = pc.ensemble(BOOK, q0=q0, t_span=(0, 3), keep=one)
+        alone = pc.ensemble(BOOK, keep=one, **how)
         assert np.array_equal(found[name], alone[one.usual_name], equal_nan=True), name
-    assert "drift: in 6 of 6" in str(found)
-
-
-def test_members_that_were_not_run_have_no_numbers():
-    keep = {
-        "a": pc.reducers.Extremes(),
-        "b": pc.reducers.EnergyDrift(),
-        "c": pc.reducers.LargestExponent(),
-    }
-    q0 = [[0.1, 0.2], [np.nan, 0.2]]
-    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 1), keep=keep, on_failure="ignore")
-    for name in keep:
         assert np.isfinite(found[name][0]).all()
-        assert np.isnan(found[name][1]).all()
+        assert np.isnan(found[name][5]).all()
+    assert "drift: in 5 of 6" in str(found)
 
 
-def test_names_that_are_taken():
-    with pytest.raises(ValueError, match=r"keep\[.q.\]: this name is taken"):
-        pc.ensemble(BOOK, q0=[0.1, 0.2], t_span=(0, 1), keep={"q": pc.reducers.EnergyDrift()})
-
-
-IN_LANES = {
-    **{name: SCENES[name] for name in ("bare", "damped", "motor", "three links")},
-    "one link": pc.Scene(links=[pc.Link(mass=1.0, length=0.7)]),
-}
-
-
-def numbers(whole, member):
+def numbers(whole, member, names):
     """Return all that an ensemble has of a member."""
-    return [whole.codes[member], whole.t[member], *whole.q[member].flat, *whole.qd[member].flat]
+    states = whole.codes[member], whole.t[member], whole.q[member], whole.qd[member]
+    return np.concatenate([np.ravel(x) for x in (*states, *(whole[x][member] for x in names))])
 
 
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("beside", ["nothing", "an event"])
-@pytest.mark.parametrize("name", IN_LANES)
+@pytest.mark.parametrize("name", SMOOTH)
 def test_members_in_lanes_have_the_numbers_of_single_members(name, beside, backward):
     """An ensemble of one member has no lanes. One start is fast, one is not finite."""
-    scene = IN_LANES[name]
+    scene = SCENES[name]
     n = len(scene.links)
-    q0 = starts(13, n)
-    qd0 = np.full((13, n), 0.2)
+    q0, qd0 = starts(13, n, 4, 0.9), np.full((13, n), 0.2)
     qd0[3] = 1e160
     qd0[5] = 200.0
     t_span = (1.5, -1.0) if backward else (0, 2)
-    asked = {
-        "t_span": t_span,
-        "rtol": 1e-5,
-        "on_failure": "ignore",
-        "max_steps": 2000,
-        "workers": 1,
-    }
-    reducers = {"span": pc.reducers.Extremes(), "drift": pc.reducers.EnergyDrift()}
+    asked = {"t_span": t_span, "rtol": 1e-5, "on_failure": "ignore", "max_steps": 2000}
+    reducers = {"span": R.Extremes(), "drift": R.EnergyDrift()}
     wanted = [["span"], ["drift"], ["span", "drift"]]
     if beside == "an event":
         asked["events"] = [pc.events.RateZero(link=n, terminal=2)]
-        reducers["first"] = pc.reducers.FirstEvent(pc.events.RateZero(link=1))
+        reducers["first"] = R.FirstEvent(pc.events.RateZero(link=1))
         wanted.append(["span", "drift", "first"])
     mass = pc.sampling.uniform(0.5, 1.0, 13, seed=12)
     mass[8] = -1.0
     for method in (*pc._core.methods_with_lanes(scene._compiled), "auto"):
         for names in wanted:
             keep = {name: reducers[name] for name in names}
-            how = asked | {"method": method, "keep": keep}
+            how = asked | {"method": method, "keep": keep, "workers": 1}
             whole = pc.ensemble(scene, q0=q0, qd0=qd0, vary={"link[1].mass": mass}, **how)
             assert len(whole.counts()) > 1
             evaluations = 0
@@ -177,7 +143,6 @@ def test_members_in_lanes_have_the_numbers_of_single_members(name, beside, backw
                 vary = {"link[1].mass": mass[i : i + 1]}
                 one = pc.ensemble(scene, q0=q0[i], qd0=qd0[i], vary=vary, **how)
                 evaluations += one.statistics["nfev"]
-                assert np.array_equal(numbers(whole, i), numbers(one, 0), equal_nan=True)
-                for name in names:
-                    assert np.array_equal(whole[name][i], one[name][0], equal_nan=True), (i, name)
+                of_whole, of_one = numbers(whole, i, names), numbers(one, 0, names)
+                assert np.array_equal(of_whole, of_one, equal_nan=True), i
             assert whole.statistics["nfev"] == evaluations
