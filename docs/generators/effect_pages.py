@@ -12,8 +12,9 @@ from math import inf
 import pendcore as pc
 from effect_sections import COMPILED, MORE
 from pendcore._run.energy import LOSSES
-from pendcore._scene.effect_class import KINDS, Effect, OwnEffect
+from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.effect_description import CAVEATS, Description
+from pendcore.effects import KINDS
 
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",

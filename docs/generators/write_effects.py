@@ -2,8 +2,8 @@
 
     python docs/generators/write_effects.py
 
-It writes python/pendcore/effects.pyi, the pages in docs/effects, and the table of kinds in
-docs/how_to/case_files.md. A test compares them with what it would write.
+It writes the pages in docs/effects, and the table of kinds in docs/how_to/case_files.md. A test
+compares them with what it would write.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from effect_pages import kinds_table, pages
-from effect_stub import stub
 
 ROOT = Path(__file__).parents[2]
 BEGIN, END = "<!-- kinds: begin -->\n", "<!-- kinds: end -->"
@@ -26,7 +25,6 @@ def with_kinds(text: str) -> str:
 def written() -> dict[Path, str]:
     """Return every file and its text."""
     files = {ROOT / "docs/effects" / name: text for name, text in pages().items()}
-    files[ROOT / "python/pendcore/effects.pyi"] = stub()
     case_files = ROOT / "docs/how_to/case_files.md"
     files[case_files] = with_kinds(case_files.read_text())
     return files

@@ -6,18 +6,220 @@
     pc.effects.Motor(joint=2, sinusoid=pc.effects.Sinusoid(amplitude=1.0, angular_frequency=6.0))
     pc.effects.kinds()               # every kind, as in case files, with its class
 
-The classes are made from what the core says of each effect; effects.pyi shows them. docs/effects
-has a page on each.
+The core has their laws, checks their parameters and describes them, which gives the classes their
+docstrings. docs/effects has a page on each.
 """
 
 from __future__ import annotations
 
-from typing import NoReturn
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from pendcore._messages.arguments import did_you_mean
-from pendcore._scene.effect_class import KINDS, PARTS, Effect, Part
+from pendcore._scene.effect_class import Described, Effect, OwnEffect, Part, PythonEffect, filled
 
-globals().update(PARTS | {cls.__name__: cls for cls in KINDS.values()})
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    import numpy.typing as npt
+
+    Numbers = Sequence[float] | npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Sinusoid(Part):
+    """amplitude sin(angular_frequency t + phase); the amplitude has the unit of what it drives."""
+
+    amplitude: float
+    angular_frequency: float
+    phase: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Table(Part):
+    """Torque at given times, linear between them or held; the run ends where the table ends."""
+
+    t: Numbers
+    torque: Numbers
+    hold: bool = False
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PD(Part):
+    """A controller that holds the joint at an angle: kp (reference - phi) - kd w."""
+
+    kp: float
+    kd: float
+    reference: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Spline(Part):
+    """Natural cubic splines x(t) and y(t) through given points; the run ends where they end."""
+
+    t: Numbers
+    x: Numbers
+    y: Numbers
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class ViscousJoint(Effect):
+    """Viscous damping in a joint, with a linear, a quadratic and a cubic term."""
+
+    joint: int
+    damping: float
+    damping2: float = 0.0
+    damping3: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class DryJointFriction(Effect):
+    """Dry friction in a joint, Coulomb's with a static peak (Stribeck)."""
+
+    joint: int
+    coulomb: float
+    static: float | None = None
+    stribeck_velocity: float = 0.1
+    exponent: float = 2.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class RodDrag(Effect):
+    """Air drag on a link, along the whole rod, quadratic in the speed across it."""
+
+    link: int
+    drag_coefficient: float
+    diameter: float
+    air_density: float = 1.225
+    wind: Numbers = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class TorsionalSpring(Effect):
+    """A linear torsional spring in a joint."""
+
+    joint: int
+    stiffness: float
+    rest_angle: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Motor(Effect):
+    """A motor in a joint: constant torque, sinusoid, table or PD controller."""
+
+    joint: int
+    constant: float | None = None
+    sinusoid: Sinusoid | None = None
+    table: Table | None = None
+    pd: PD | None = None
+    limit: float = inf
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class RotorInertia(Effect):
+    """The inertia of a rotor that turns with a joint."""
+
+    joint: int
+    armature: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Payload(Effect):
+    """A rigid body at the tip, fixed to the last link."""
+
+    mass: float
+    inertia: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Lock(Effect):
+    """A joint locked at an angle: one degree of freedom less. It may join massless links."""
+
+    joint: int
+    angle: float | None = None
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class JointStop(Effect):
+    """Stops at the ends of the range of a joint, with restitution."""
+
+    joint: int
+    range: Numbers
+    restitution: float = 0.0
+    capture_speed: float | None = None
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class DrivenPivot(Effect):
+    """A pivot that is moved: a sinusoid for each axis, or a spline."""
+
+    x: Sinusoid | None = None
+    y: Sinusoid | None = None
+    spline: Spline | None = None
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class CompiledUser(OwnEffect):
+    """An effect of the user's own, as a compiled function of t, q and qd."""
+
+    address: Any
+    data: Any = 0
+    breaks: Numbers = ()
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class User(PythonEffect):
+    """An effect of the user's own, as a Python function of t, q and qd."""
+
+    function: Callable[..., npt.ArrayLike]
+    breaks: Numbers = ()
+
+
+PARTS: dict[str, type[Part]] = {cls.__name__: cls for cls in (Sinusoid, Table, PD, Spline)}
+"""The classes of what parameters hold that have parameters of their own, by name."""
+
+KINDS: dict[str, type[Effect]] = {
+    cls.kind: cls
+    for cls in (
+        ViscousJoint,
+        DryJointFriction,
+        RodDrag,
+        TorsionalSpring,
+        Motor,
+        RotorInertia,
+        Payload,
+        Lock,
+        JointStop,
+        DrivenPivot,
+        CompiledUser,
+        User,
+    )
+}
+"""The classes of effects, by kind, in the order of the core's registry."""
+
+
+def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
+    """Make one of a mapping; what is wrong is told after ``where``, or the name of the class.
+
+    A part may be a mapping itself.
+    """
+    where = f"{cls.__name__}: " if where is None else where
+    whole = dict(values)
+    for parameter in cls.description.parameters:
+        value = values.get(parameter.name)
+        if parameter.part and isinstance(value, Mapping):
+            inner = f"{where}{parameter.name}."
+            whole[parameter.name] = made(PARTS[parameter.part], value, inner)
+    return filled(cls, whole, where)
+
+
+def effect_of(kind: str, values: Mapping[str, Any], where: str | None = None) -> Effect:
+    """Make an effect of its kind and a mapping; see `made`."""
+    effect: Effect = made(KINDS[kind], values, where)
+    return effect
 
 
 def kinds() -> dict[str, type[Effect]]:
@@ -48,4 +250,29 @@ def __getattr__(name: str) -> NoReturn:
     raise AttributeError(f"pendcore.effects has no {name!r}: {did_you_mean(name, __all__)}")
 
 
-__all__ = ["Effect", "Part", "kinds", "parts", *PARTS, *(cls.__name__ for cls in KINDS.values())]
+def __dir__() -> list[str]:
+    return __all__
+
+
+__all__ = [
+    "PD",
+    "CompiledUser",
+    "DrivenPivot",
+    "DryJointFriction",
+    "Effect",
+    "JointStop",
+    "Lock",
+    "Motor",
+    "Part",
+    "Payload",
+    "RodDrag",
+    "RotorInertia",
+    "Sinusoid",
+    "Spline",
+    "Table",
+    "TorsionalSpring",
+    "User",
+    "ViscousJoint",
+    "kinds",
+    "parts",
+]

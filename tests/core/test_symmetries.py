@@ -22,7 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pendcore import _core
-from pendcore._scene.effect_class import KINDS
+from pendcore.effects import KINDS
 from symmetries import (
     MIRRORED,
     Units,

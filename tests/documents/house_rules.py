@@ -75,6 +75,8 @@ PYTHON_LAYERS = [
     "derive",
     "cli",
 ]
+LAYER_OF_PUBLIC_MODULE = {"effects": "_scene"}
+"""Where the package's own files are more than names of what stands elsewhere."""
 EXTRAS = PYTHON_LAYERS[PYTHON_LAYERS.index("pendcore") + 1 :]
 
 # The classes that users hold, and the package. They lead to the rooms above when they are asked.
@@ -182,8 +184,9 @@ def imports_of(tree: ast.AST, where: str = "") -> Iterator[tuple[str, str]]:
 
 def layer_of(module: str) -> str:
     """Return the layer of a module or of a name in it; what is in no folder is `pendcore`."""
-    names = module.split(".")
-    return names[1] if len(names) > 1 and names[1] in PYTHON_LAYERS else names[0]
+    first, *names = module.split(".")
+    place = LAYER_OF_PUBLIC_MODULE.get(names[0], names[0]) if names else first
+    return place if place in PYTHON_LAYERS else first
 
 
 def modules_of(root: Path) -> dict[str, Path]:

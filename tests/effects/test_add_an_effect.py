@@ -84,14 +84,19 @@ def test_the_lines_to_add_stand_where_it_says() -> None:
     include, name = LINES_OF_CPP
     assert include.replace("magnetic_brake", "motor") in registry
     assert name.split()[0].replace("MagneticBrake", "Motor") in registry.split()
-    line, drawn, balanced = LINES_OF_PYTHON
+    line, drawn, balanced, declared = LINES_OF_PYTHON
     assert line.replace("magnetic_brake", "motor").replace("MagneticBrake", "Motor") in laws
     names = {"fixed": st.fixed_dictionaries, "between": between, "at": {"joint": st.just(1)}}
     strategy = eval(f"{{{drawn}}}", names)["magnetic_brake"]
     assert isinstance(strategy, st.SearchStrategy)
     ((kind, told),) = eval(f"[{balanced}]")
     assert kind == "magnetic_brake"
-    assert {*told} == set(re.findall(r"\.name = \"(\w+)\"", HEADER)) - {"MagneticBrake"} | {"joint"}
+    names = ["joint", *re.findall(r"\.name = \"(\w+)\"", HEADER)]
+    names.remove("MagneticBrake")
+    assert {*told} == {*names}
+    assert re.findall(r"^    (\w+): ", declared, re.MULTILINE) == names
+    sentence = re.search(r'\.sentence = ("A .*?")', HEADER)[1]
+    assert f'""{sentence}""' in declared
 
 
 def test_the_parts_of_the_contract_that_it_names_are_there() -> None:

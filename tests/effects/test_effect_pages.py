@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import ast
+import inspect
 import re
 import sys
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore._scene.effect_description import effects, parts
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "docs/generators"))
 import effect_pages  # noqa: E402
-import effect_stub  # noqa: E402
 import write_effects  # noqa: E402
 
 KINDS = pc.effects.kinds()
@@ -81,10 +82,17 @@ def test_impacts_are_counted_as_their_page_says():
     assert rates[k + 1] == pytest.approx(-0.4 * rates[k], rel=1e-12)
 
 
-def test_the_stub_has_the_names_of_the_module():
-    declared = {
-        node.name
-        for node in ast.parse(effect_stub.stub()).body
-        if isinstance(node, ast.ClassDef | ast.FunctionDef)
-    }
-    assert declared | {"Effect", "Part"} == set(pc.effects.__all__)
+def test_the_classes_are_what_the_core_describes():
+    described = {told.name: told for told in (*effects(), *parts())}
+    classes = {cls.__name__: cls for cls in (*KINDS.values(), *pc.effects.parts().values())}
+    assert [*KINDS] == [told.kind for told in effects()]
+    assert (
+        {*classes} == {*described} == {*pc.effects.__all__} - {"Effect", "Part", "kinds", "parts"}
+    )
+    for name, told in described.items():
+        assert getattr(pc.effects, name) is classes[name]
+        assert [(one.name, one.default) for one in fields(classes[name])] == [
+            (one.name, MISSING if one.required else one.default) for one in told.parameters
+        ]
+        source = inspect.getsource(classes[name])
+        assert f'"""{told.sentence}"""' in source

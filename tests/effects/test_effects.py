@@ -32,7 +32,7 @@ def test_every_kind_of_the_core_has_its_class_under_its_names():
     [
         ("ViscusJoint", r"did you mean 'ViscousJoint'\?"),
         ("torsional_spring", r"did you mean 'TorsionalSpring'\?"),
-        ("Xyz", r"known are Effect, Part, kinds, "),
+        ("Xyz", r"known are Effect, Part, "),
     ],
 )
 def test_an_unknown_effect_is_told_with_the_nearest_known_one(name, remedy):
@@ -93,7 +93,7 @@ def test_an_effect_cannot_be_changed_and_can_be_varied():
         effect.color = "red"
     assert effect.replace(joint=2).replace(joint=1) == copy.copy(effect) == effect
     assert effect.replace(sinusoid=None, constant=2.0) == fx.Motor(joint=1, constant=2.0)
-    with pytest.raises(TypeError, match=r"did you mean 'joint'\?"):
+    with pytest.raises(TypeError, match="'joints'"):
         effect.replace(joints=3)
     others = [fx.ViscousJoint(1, 0.1), fx.ViscousJoint(2, 0.1), fx.TorsionalSpring(1, 0.1)]
     assert len({*others}) == len({*map(repr, others)}) == 3
@@ -146,11 +146,6 @@ TYPES = {
     "Motor(1, sinusoid=5)": r"sinusoid = 5: must be a pendcore\.effects\.Sinusoid",
     "Motor(1, sinusoid=PD(1, 2, 3))":
         r"sinusoid = PD\(.*\): must be a pendcore\.effects\.Sinusoid",
-    "ViscousJoint(joint=1, dampings=0.1)": r"has no parameter 'dampings': did you mean 'damping'\?",
-    "Lock(joint=1, colour=0.1)": r"has no parameter 'colour': known are joint, angle",
-    "ViscousJoint(joint=1)": r"damping is missing: .*\(N m s/rad\)",
-    "Lock(1, joint=1)": r"joint is given twice",
-    "Lock(1, 2, 3)": r"takes joint, angle.* given 3 values",
     "User(5)": r"function = 5: must be a function of t",
     "CompiledUser('f')": r"address = 'f': must be an address, a ctypes function or a numba cfunc",
 }  # fmt: skip

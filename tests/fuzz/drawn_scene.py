@@ -10,8 +10,9 @@ from math import inf
 from typing import Any
 
 import pendcore as pc
-from pendcore._scene.effect_class import KINDS, OwnEffect
+from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.effect_description import Description, Parameter
+from pendcore.effects import KINDS
 
 from fuzz import own_functions
 from fuzz.choices import Choices, happens

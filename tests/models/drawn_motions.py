@@ -18,7 +18,7 @@ from fuzz.drawn_run import Drawn
 from fuzz.drawn_scene import SceneMaker
 from hypothesis import reject
 from hypothesis import strategies as st
-from pendcore._scene.effect_class import KINDS
+from pendcore.effects import KINDS
 from symmetries import with_effects
 
 SMOOTH = ("viscous_joint", "rod_drag", "torsional_spring", "motor", "rotor_inertia", "payload",

@@ -13,7 +13,7 @@ from fuzz.choices import FromSeed
 from fuzz.drawn_run import TIME_LIMIT, Drawn, drawn
 from fuzz.shrinking import breaches_alone, shrunk
 from fuzz.verdict import of_case, of_seed
-from pendcore._scene.effect_class import KINDS
+from pendcore.effects import KINDS
 
 CASES = 400
 SEED = "ci"

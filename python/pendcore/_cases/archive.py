@@ -28,9 +28,10 @@ from pendcore._run.accuracy import Accuracy
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.events import Function
 from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import OwnEffect, effect_of
+from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
+from pendcore.effects import effect_of
 
 _RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"

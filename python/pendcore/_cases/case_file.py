@@ -45,9 +45,10 @@ from pendcore._messages.arguments import vector
 from pendcore._run.events import KINDS as EVENT_KINDS
 from pendcore._run.events import Event, Function
 from pendcore._run.options import RUN_DEFAULTS
-from pendcore._scene.effect_class import KINDS, PARTS, Effect, OwnEffect, effect_of
+from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
+from pendcore.effects import KINDS, PARTS, effect_of
 
 KEYS = {
     "": ("name", "gravity", "link", "effect", "event", "start", "run", "map"),

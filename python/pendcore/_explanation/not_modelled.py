@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from pendcore._scene.effect_class import KINDS, OwnEffect
+from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.scene import Scene
+from pendcore.effects import KINDS
 
 NOT_MODELLED = {
     "bending": "Bending of the links: they are rigid.",

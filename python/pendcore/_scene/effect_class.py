@@ -1,21 +1,18 @@
-"""Classes made from the descriptions of effects.
-
-Nothing here knows a single effect: one that is added to the core has its class.
-"""
+"""What effects and their parts have in common: they cannot be changed, compare and hash."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import MISSING, field, make_dataclass
 from functools import partial
-from inspect import Parameter as Argument
-from inspect import Signature
 from typing import Any, ClassVar, NoReturn, Self
 
 from pendcore import _core
 from pendcore._messages.arguments import did_you_mean, flag, in_unit, number, numbers, whole_number
 from pendcore._scene.compiled_function import address
 from pendcore._scene.effect_description import Description, Parameter, docstring, effects, parts
+
+DESCRIPTIONS = {told.name: told for told in (*parts(), *effects())}
+"""What the core says of each class, by name."""
 
 
 class Described:
@@ -24,15 +21,19 @@ class Described:
     __slots__ = ()
     description: ClassVar[Description]
 
-    def __init__(self, *values: Any, **named: Any) -> None:
-        self._fill(type(self).__name__ + ": ", _bound(self.description, values, named))
+    def __init_subclass__(cls) -> None:
+        if cls.__name__ in DESCRIPTIONS:
+            cls.description = DESCRIPTIONS[cls.__name__]
+            cls.__doc__ = docstring(cls.description)
 
-    def _fill(self, where: str, given: Mapping[str, Any]) -> None:
-        """Take the values; what is wrong is told after ``where``."""
-        _check_names(where, self.description, given)
+    def __post_init__(self) -> None:
+        self._settle(f"{type(self).__name__}: ")
+
+    def _settle(self, where: str) -> None:
+        """Make plain what was given, and check it; what is wrong is told after ``where``."""
         for parameter in self.description.parameters:
-            value = given.get(parameter.name, parameter.default)
-            plain = _plain(where + parameter.name, parameter, value)
+            given = getattr(self, parameter.name)
+            plain = _plain(where + parameter.name, parameter, given)
             object.__setattr__(self, parameter.name, plain)
         self._check(where)
 
@@ -71,7 +72,7 @@ class Described:
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
-        return made, (type(self), self.particulars())
+        return _unpickled, (type(self), self.particulars())
 
 
 class Part(Described):
@@ -110,6 +111,11 @@ class Effect(Described):
     __slots__ = ()
     kind: ClassVar[str]
 
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if cls.__name__ in DESCRIPTIONS:
+            cls.kind = cls.description.kind
+
     def _check(self, where: str) -> None:
         _core.check_effect(where, self._as_pair())
 
@@ -124,9 +130,12 @@ class OwnEffect(Effect):
     __slots__ = ("_origins",)
     _origins: dict[str, Any]
 
-    def _fill(self, where: str, given: Mapping[str, Any]) -> None:
-        object.__setattr__(self, "_origins", dict(given))
-        super()._fill(where, given)
+    def _settle(self, where: str) -> None:
+        given = {p.name: getattr(self, p.name) for p in self.description.parameters}
+        defaults = {p.name: p.default for p in self.description.parameters if not p.required}
+        origins = {name: x for name, x in given.items() if x is not defaults.get(name, self)}
+        object.__setattr__(self, "_origins", origins)
+        super()._settle(where)
 
     def cannot_be(self, what: str, remedy: str = "") -> TypeError:
         """Return the error that says why it cannot be pickled, written, saved."""
@@ -164,65 +173,19 @@ class PythonEffect(OwnEffect):
         return self.kind, tuple(self._for_the_core().values())
 
 
-def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
-    """Make one of a mapping; what is wrong is told after ``where``, or the name of the class.
-
-    A part may be a mapping itself.
-    """
-    where = f"{cls.__name__}: " if where is None else where
-    whole = dict(values)
-    for parameter in cls.description.parameters:
-        value = values.get(parameter.name)
-        if parameter.part and isinstance(value, Mapping):
-            inner = f"{where}{parameter.name}."
-            whole[parameter.name] = made(PARTS[parameter.part], value, inner)
+def filled(cls: type[Described], values: Mapping[str, Any], where: str) -> Any:
+    """Make one of all values by name; what is wrong is told after ``where``."""
+    _check_names(where, cls.description, values)
     new = object.__new__(cls)
-    new._fill(where, whole)
+    for parameter in cls.description.parameters:
+        value = values.get(parameter.name, parameter.default)
+        object.__setattr__(new, parameter.name, value)
+    new._settle(where)
     return new
 
 
-def effect_of(kind: str, values: Mapping[str, Any], where: str | None = None) -> Effect:
-    """Make an effect of its kind and a mapping; see `made`."""
-    return made(KINDS[kind], values, where)  # type: ignore[no-any-return]
-
-
-def _class(told: Description, base: type[Any]) -> type[Any]:
-    fields = []
-    arguments = []
-    for p in told.parameters:
-        default = MISSING if p.required else p.default
-        fields.append((p.name, object, field(default=default)))
-        usual = Argument.empty if p.required else p.default
-        arguments.append(Argument(p.name, Argument.POSITIONAL_OR_KEYWORD, default=usual))
-    names = {
-        "__doc__": docstring(told),
-        "__signature__": Signature(arguments),
-        "description": told,
-    } | ({"kind": told.kind} if told.kind else {})
-    made = make_dataclass(
-        told.name,
-        fields,
-        bases=(base,),
-        namespace=names,
-        frozen=True,
-        slots=True,
-        init=False,
-        repr=False,
-    )
-    made.__module__ = "pendcore.effects"  # from Python 3.12 on, make_dataclass enters its caller
-    return made
-
-
-def _bound(told: Description, values: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
-    names = [parameter.name for parameter in told.parameters]
-    if len(values) > len(names):
-        raise TypeError(
-            f"{told.name}: takes {', '.join(names)}, and was given {len(values)} values"
-        )
-    given = dict(zip(names, values, strict=False))
-    for name in given.keys() & named.keys():
-        raise TypeError(f"{told.name}: {name} is given twice")
-    return given | named
+def _unpickled(cls: type[Described], values: Mapping[str, Any]) -> Any:
+    return filled(cls, values, f"{cls.__name__}: ")
 
 
 def _check_names(where: str, told: Description, given: Iterable[str]) -> None:
@@ -256,15 +219,3 @@ def _plain(name: str, parameter: Parameter, value: Any) -> Any:
         "function": lambda _, function: function,
     }
     return converted[parameter.type](name, value)
-
-
-def _base(told: Description) -> type[Effect]:
-    types = {parameter.type for parameter in told.parameters}
-    return PythonEffect if "function" in types else OwnEffect if "address" in types else Effect
-
-
-PARTS: dict[str, type[Part]] = {told.name: _class(told, Part) for told in parts()}
-"""The classes of what parameters hold that have parameters of their own, by name."""
-
-KINDS: dict[str, type[Effect]] = {told.kind: _class(told, _base(told)) for told in effects()}
-"""The classes of effects, by kind."""

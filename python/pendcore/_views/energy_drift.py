@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import KINDS
 from pendcore._scene.scene import Scene
+from pendcore.effects import KINDS
 
 TOO_LARGE = "too large to trust this run: tighten rtol and atol (or the step)"
 
