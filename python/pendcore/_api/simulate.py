@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._accuracy.target_error import run_to_error
 from pendcore._messages.arguments import no_time_span, number
 from pendcore._messages.progress import ProgressBar, callback, close
 from pendcore._messages.warning import warn
@@ -141,6 +140,8 @@ def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Sol
         for name, option in OPTIONS.items()
         if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
     }
+    from pendcore._accuracy.target_error import run_to_error
+
     return run_to_error(start, error, asked)
 
 
