@@ -55,7 +55,7 @@ BREACHES = {
         (f"{PACKAGE}/_cases/case.py", "from pendcore import simulate", "above it"),
         (f"{PACKAGE}/__init__.py", "from pendcore.cli import main", "(pendcore) imports"),
         (
-            f"{PACKAGE}/_api/simulate.py",
+            f"{PACKAGE}/_api/ensemble.py",
             "def told():\n    from pendcore._views.table import text",
             "imports pendcore._views.table.text in a function",
         ),

@@ -20,7 +20,10 @@ class Hidden:
         if name.startswith("pendcore._"):
             raise ImportError(f"{name} is private")
 
-for name in [name for name in sys.modules if name.startswith("pendcore._")]:
+for name in dir(pendcore):
+    getattr(pendcore, name)  # some are loaded when they are asked for
+extras = tuple(f"pendcore.{name}" for name in sys.argv[1:])
+for name in [name for name in sys.modules if name.startswith(("pendcore._", *extras))]:
     del sys.modules[name]
     vars(pendcore).pop(name.split(".")[1], None)
 sys.meta_path.insert(0, Hidden())
