@@ -117,7 +117,7 @@ def simulate(
         start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(start, error, asked), on_failure)
     progress = asked.pop("progress", None)
-    report = ProgressBar() if progress is None else callback(progress)
+    report: Any = ProgressBar() if progress is None else callback(progress)
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn)
     except TypeError:
@@ -125,7 +125,8 @@ def simulate(
         raise
     solution = Solution(scene, run)
     if run.success:
-        close(report)
+        if progress is not None or report.bar is not None:
+            close(report)
         return solution
     return checked(completed(solution, report), on_failure)
 

@@ -28,16 +28,16 @@ class ProgressBar:
     count, unit = 100, "%"
     """What it counts, and how many there are."""
     _since: float | None = None
-    _bar: tqdm[Any] | None = None
+    bar: tqdm[Any] | None = None
 
     def __call__(self, fraction: float) -> None:
         if self._since is None:
             self._since = monotonic() if self.wanted() else inf
         if monotonic() - self._since < self.patience:
             return
-        if self._bar is None:
-            self._bar = _new_bar(self.what, self.count, self.unit)
-        self._bar.update(self.count * fraction - self._bar.n)
+        if self.bar is None:
+            self.bar = _new_bar(self.what, self.count, self.unit)
+        self.bar.update(self.count * fraction - self.bar.n)
 
     def wanted(self) -> bool:
         """Only people look at bars."""
@@ -45,8 +45,8 @@ class ProgressBar:
 
     def close(self) -> None:
         """End the line of the bar, if there is one."""
-        if self._bar is not None:
-            self._bar.close()
+        if self.bar is not None:
+            self.bar.close()
 
 
 class ImmediateBar(ProgressBar):
