@@ -20,6 +20,7 @@ from pendcore._messages.arguments import (
     vector,
     whole_number,
 )
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
@@ -31,6 +32,7 @@ __all__ = [
     "close",
     "did_you_mean",
     "finite_array",
+    "hand_over",
     "number",
     "numbers",
     "positive",

@@ -37,6 +37,7 @@ from pendcore._accuracy.position_error import (
 )
 from pendcore._accuracy.rounding import moved
 from pendcore._messages.arguments import Floats, time_limit_of
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._run.call import Choice, Start, resumed, run, start_of, tightened
 from pendcore._run.error_estimate import ErrorEstimate
@@ -177,7 +178,7 @@ def error_estimate(
             if found[-1].is_complete or monotonic() > until:
                 break
     except BaseException as stop:
-        stop.solution = solution  # type: ignore[attr-defined]
+        hand_over(stop, solution=solution)
         raise
     finally:
         close(report)
@@ -236,7 +237,7 @@ def _compared(
         if isinstance(partly := getattr(stop, "solution", second), Solution):
             seconds.append(partly)
         if seconds:
-            stop.estimate = estimate(solution, seconds, text)  # type: ignore[attr-defined]
+            hand_over(stop, estimate=estimate(solution, seconds, text))
         raise
     return estimate(solution, seconds, text)
 

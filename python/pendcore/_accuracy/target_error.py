@@ -30,6 +30,7 @@ from pendcore._accuracy.tuning import (
     MOST_STEPS,
 )
 from pendcore._messages.arguments import finite_array
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import callback, close
 from pendcore._run.accuracy import AccuracyError
 from pendcore._run.call import Start
@@ -70,12 +71,12 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
         best = runs.refused or runs.best()
         if isinstance(partly := getattr(stop, "solution", None), Solution):
             best = best or (partly if partly.scene is start.scene else None)
-            del stop.solution  # type: ignore[attr-defined]
+            del vars(stop)["solution"]
         if best is not None and best is not runs.refused:
             during = "while it was verified" if best.success else "during the run itself"
             runs.concluded(best, "ended early", None, f"interrupted {during}")
         if best is not None:
-            stop.solution = best  # type: ignore[attr-defined]
+            hand_over(stop, solution=best)
         raise
     finally:
         close(report)

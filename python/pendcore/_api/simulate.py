@@ -100,7 +100,7 @@ def simulate(
     """
     # A short run takes two microseconds, and this function may hardly take more: it calls nothing
     # that default options do not need.
-    asked: dict[str, Any] = options  # type: ignore[assignment]
+    asked: Any = options
     if not isinstance(scene, Scene):
         require_scene(scene)
     on_failure, error = asked.pop("on_failure", "warn"), asked.pop("error", None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,8 +34,9 @@ def save(found: Ensemble, path: str | os.PathLike[str]) -> None:
     arrays |= {name: np.asarray(values[...]) for name, values in found.arrays.items()}
     if request.t_eval is not None:
         arrays["time"] = request.t_eval
+    entries: dict[str, Any] = {ENTRY: np.array(json.dumps(told))} | arrays
     with whole_file(path) as name, name.open("wb") as file:
-        np.savez(file, **{ENTRY: np.array(json.dumps(told))}, **arrays)  # type: ignore[arg-type]
+        np.savez(file, **entries)
 
 
 def is_ensemble(path: str | os.PathLike[str]) -> bool:

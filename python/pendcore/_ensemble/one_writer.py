@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-try:
+if sys.platform != "win32":
     import fcntl
-except ImportError:  # not on Windows
-    fcntl = None  # type: ignore[assignment]
 
 _held: set[int] = set()
 """Descriptors of the folders that this process holds."""
@@ -23,7 +22,7 @@ def one_writer(path: Path) -> Iterator[None]:
     The system lets go of it when this process ends, however it ends. A file system that knows no
     such locks lets everyone in.
     """
-    if fcntl is None:
+    if sys.platform == "win32":
         yield
         return
     descriptor = os.open(path, os.O_RDONLY)
@@ -63,5 +62,5 @@ def _let_go() -> None:
     _held.clear()
 
 
-if fcntl is not None:
+if sys.platform != "win32":
     os.register_at_fork(after_in_child=_let_go)

@@ -15,6 +15,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
 from pendcore._messages.arguments import did_you_mean, time_limit_of, whole_number
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import callback, close
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.run_error import REMEDY, require_on_failure
@@ -63,7 +64,7 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
         close(report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
     if found.error is not None:
-        found.error.ensemble = result  # type: ignore[attr-defined]
+        hand_over(found.error, ensemble=result)
         try:
             raise found.error
         finally:
@@ -89,14 +90,12 @@ def _checked(found: Ensemble, on_failure: str) -> Ensemble:
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
     if on_failure == "raise":
-        try:
-            raise RuntimeError(complaint)
-        except RuntimeError as error:
-            error.ensemble = found  # type: ignore[attr-defined]
-            raise
+        error = RuntimeError(complaint)
+        hand_over(error, ensemble=found)
+        raise error
     try:
         warn(f"{complaint}; {REMEDY}")
-    except PendcoreWarning as error:
-        error.ensemble = found  # type: ignore[attr-defined]
+    except PendcoreWarning as warning:
+        hand_over(warning, ensemble=found)
         raise
     return found

@@ -125,7 +125,8 @@ class Explanation:
             "lanes": self.lanes,
             "remarks": self.remarks,
         }
-        return _plain(told)  # type: ignore[no-any-return]
+        plain: dict[str, Any] = _plain(told)
+        return plain
 
     def _repr_html_(self) -> str:
         costs = [

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._run.methods import known_methods
 from pendcore._run.options import RUN_DEFAULTS
@@ -97,7 +98,7 @@ def completed(result: Solution, report: Callable[[float], object] | None) -> Sol
     close(report)
     error = result._run.take_error()
     if error is not None:
-        error.solution = result  # type: ignore[attr-defined]
+        hand_over(error, solution=result)
         try:
             raise error
         finally:

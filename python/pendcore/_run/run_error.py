@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.solution import Solution
 
@@ -50,7 +51,7 @@ def checked(solution: Solution, on_failure: str) -> Solution:
     try:
         warn(f"{_complaint(solution)}; {REMEDY}")
     except PendcoreWarning as error:  # where warnings are errors the run is not lost either
-        error.solution = solution  # type: ignore[attr-defined]
+        hand_over(error, solution=solution)
         raise
     return solution
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from pendcore._messages.arguments import number
 
@@ -102,7 +103,8 @@ class Link:
         >>> heavy, heavy.inertia
         (Link(mass=3.0, length=2.0), 1.0)
         """
-        return Link(**{**self.particulars(), **changes})  # type: ignore[arg-type]
+        given: dict[str, Any] = {**self.particulars(), **changes}
+        return Link(**given)
 
     __replace__ = replace  # copy.replace() of Python 3.13
 

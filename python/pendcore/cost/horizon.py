@@ -21,6 +21,7 @@ from pendcore.messages import (
     Progress,
     callback,
     close,
+    hand_over,
     numbers,
     positive,
     require_scene,
@@ -115,7 +116,7 @@ def horizon_work(
             return replace(work, refusal=str(refusal))
     except BaseException as stopped:
         forget_inner_runs(stopped)
-        stopped.work = _work(start, limit, choices, found)  # type: ignore[attr-defined]
+        hand_over(stopped, work=_work(start, limit, choices, found))
         raise
     finally:
         close(report)

@@ -18,6 +18,7 @@ from pendcore.messages import (
     callback,
     close,
     finite_array,
+    hand_over,
     number,
     require_scene,
     silence,
@@ -145,7 +146,7 @@ def accuracy_cost(
     except BaseException as stop:
         forget_inner_runs(stop)
         measurement.remarks.append("it was interrupted: this is what was measured until then")
-        stop.accuracy_cost = measurement.result()  # type: ignore[attr-defined]
+        hand_over(stop, accuracy_cost=measurement.result())
         raise
     finally:
         close(report)

@@ -120,7 +120,7 @@ def _ffmpeg() -> str | None:
     if found := shutil.which("ffmpeg"):
         return found
     try:
-        import imageio_ffmpeg  # type: ignore[import-not-found,unused-ignore]
+        import imageio_ffmpeg
     except ImportError:
         return None
     return str(imageio_ffmpeg.get_ffmpeg_exe())

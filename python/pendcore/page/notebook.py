@@ -52,14 +52,14 @@ class NotebookPage:
 def widget_of(text: str, height: int) -> Any:
     """Return an anywidget that holds the page; its ``case`` is what the page shows now."""
     try:
-        import anywidget  # type: ignore[import-not-found,unused-ignore]
-        import traitlets  # type: ignore[import-not-found,unused-ignore]
+        import anywidget
+        import traitlets
     except ImportError:
         raise ImportError(
             "widget: anywidget is missing (pip: anywidget); sol.page() needs nothing"
         ) from None
 
-    class PageWidget(anywidget.AnyWidget):  # type: ignore[misc]
+    class PageWidget(anywidget.AnyWidget):
         """A page of a run; ``case`` is the case that it shows, named as in a case file."""
 
         _esm = _WIDGET

@@ -1,0 +1,8 @@
+"""What was computed before an exception is handed over with it, so that nothing is lost."""
+
+from __future__ import annotations
+
+
+def hand_over(stop: BaseException, **so_far: object) -> None:
+    """Give an exception attributes: a run, an ensemble, a measurement as far as it came."""
+    vars(stop).update(so_far)
