@@ -80,6 +80,26 @@ class Opened:
     def click(self, name: str) -> None:
         self.browser.find_element("id", name).click()
 
+    def enter(self, selector: str, value: str, event: str = "change") -> None:
+        """Give a menu or a field a value, as its reader does."""
+        self.do(
+            f"const one = document.querySelector({selector!r}); one.value = {value!r};"
+            f"one.dispatchEvent(new Event({event!r}))"
+        )
+
+    def drag(self, *places: tuple[float, float]) -> None:
+        """Press at the first place of the window, move to the others, and let go."""
+        from selenium.webdriver.common.action_chains import ActionChains
+
+        mouse = ActionChains(self.browser)
+        pointer = mouse.w3c_actions.pointer_action
+        for k, (x, y) in enumerate(places):
+            pointer.move_to_location(round(x), round(y))
+            if k == 0:
+                pointer.pointer_down()
+        pointer.pointer_up()
+        mouse.perform()
+
     def copied(self, button: str) -> str:
         self.do("pendcorePage.copied = null")
         self.do(f"document.getElementById({button!r}).click()")

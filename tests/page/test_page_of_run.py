@@ -42,11 +42,8 @@ def test_it_opens_from_disk_and_asks_for_nothing(
     page.wait("pendcorePage.neighbours?.count === 1000")
     assert page.complaints() == []
     log = [json.loads(one["message"])["message"] for one in browser.get_log("performance")]
-    asked = [
-        one["params"]["request"]["url"]
-        for one in log
-        if one["method"] == "Network.requestWillBeSent"
-    ]
+    sent = [one["params"] for one in log if one["method"] == "Network.requestWillBeSent"]
+    asked = [one["request"]["url"] for one in sent]
     assert [url for url in asked if not url.startswith(("file:", "blob:"))] == []
     assert sum(url.startswith("file:") for url in asked) == 1
 
@@ -64,22 +61,17 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     told = page.text("bits")
     assert told == f"the bits of Python: hash {run._run.fingerprint} = {run._run.fingerprint}"
     states = np.array(page.ask("[1.7, 3.9].map((t) => [...pendcorePage.run.state(t)])"))
-    assert np.array_equal(states, pc.simulate(
-        run.scene, q0=start["q0"], qd0=start["qd0"], t_span=(start["t0"], start["t_end"]),
-        on_failure="ignore", **options,
-    )([1.7, 3.9]).T)  # fmt: skip
+    assert np.array_equal(states, run([1.7, 3.9]).T)
 
 
 def test_a_hash_that_is_not_pythons_is_told(
     sol: pc.Solution, opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    plain = html._plain_case
     monkeypatch.setattr(html, "_plain_case", lambda *_: {**plain(*_), "gravity": 9.8})
     told = opened(sol).text("bits")
     assert told.startswith("not the bits of Python: hash ")
     assert told.endswith(f"Python's {sol._run.fingerprint}")
-
-
-plain = html._plain_case
 
 
 def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, opened: Open) -> None:
@@ -134,10 +126,7 @@ def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: 
     case["gravity"] = 1.62
     page.do(f"location.hash = 'case=' + encodeURIComponent({json.dumps(json.dumps(case))})")
     page.wait("pendcorePage.given.gravity === 1.62")
-    page.do(
-        "const s = document.querySelector('#method select'); s.value = 'dop853';"
-        "s.dispatchEvent(new Event('change'))"
-    )
+    page.enter("#method select", "dop853")
     assert page.ask("pendcorePage.given.run.method") == "dop853"
     page.wait("location.hash.includes('dop853')")
 
@@ -236,15 +225,15 @@ def test_what_accuracy_costs_is_measured(sol: pc.Solution, opened: Open) -> None
 def test_whoever_wants_less_motion_gets_a_page_that_waits(
     sol: pc.Solution, opened: Open, browser: Any
 ) -> None:
-    browser.execute_cdp_cmd(
-        "Emulation.setEmulatedMedia",
-        {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]},
-    )
+    def emulate(*features: dict[str, str]) -> None:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [*features]})
+
+    emulate({"name": "prefers-reduced-motion", "value": "reduce"})
     try:
         page = opened(sol)
         assert (page.text("play"), page.ask("pendcorePage.isPlaying")) == ("Play", False)
     finally:
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+        emulate()
     assert opened(sol).text("play") == "Pause"
 
 
