@@ -119,3 +119,15 @@ def opened(browser: Any, tmp_path: Path) -> Callable[..., Opened]:
         return Opened(browser, solution.to_html(tmp_path / "run.html"), fragment)
 
     return open_page
+
+
+@pytest.fixture(scope="session")
+def sol() -> pc.Solution:
+    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
+    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
+
+
+@pytest.fixture
+def page(sol: pc.Solution, opened: Callable[..., Opened]) -> Opened:
+    """Return the page of this solution, opened."""
+    return opened(sol)

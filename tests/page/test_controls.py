@@ -14,12 +14,6 @@ Open = Callable[..., Any]
 pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 
 
-@pytest.fixture(scope="module")
-def sol() -> pc.Solution:
-    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
-
-
 @pytest.mark.parametrize("size", ["desktop", "phone"])
 def test_dragging_the_tip_starts_the_run_elsewhere(
     sol: pc.Solution, opened: Open, sized: Callable[[str], None], size: str
@@ -44,10 +38,9 @@ def test_dragging_the_tip_starts_the_run_elsewhere(
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
-def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:
+def test_keys_play_step_and_go_home(page: Any, browser: Any) -> None:
     from selenium.webdriver.common.keys import Keys
 
-    page = opened(sol)
     page.do("pendcorePage.play(false); pendcorePage.go(1)")
     scene = browser.find_element("id", "scene")
     scene.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
@@ -61,10 +54,7 @@ def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any
     assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
 
 
-def test_the_picture_is_enlarged_moved_and_fitted_again(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
+def test_the_picture_is_enlarged_moved_and_fitted_again(page: Any, browser: Any) -> None:
     page.do("pendcorePage.play(false); pendcorePage.go(0)")
     view = "(() => { const { view } = pendcorePage; return [view.pixels, ...view.center] })()"
     start = page.ask("[...pendcorePage.given.start.q]")
@@ -100,8 +90,7 @@ def test_the_picture_is_enlarged_moved_and_fitted_again(
     assert page.ask(view) == pytest.approx(fitted)
 
 
-def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_every_control_has_a_name(page: Any) -> None:
     nameless = page.ask(
         "[...document.querySelectorAll('button, input, select, canvas')].filter((one) =>"
         " !(one.getAttribute('aria-label') || one.labels?.length || one.textContent.trim()))"
@@ -110,10 +99,7 @@ def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
     assert nameless == []
 
 
-def test_sliders_change_parameters_and_the_run(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
+def test_sliders_change_parameters_and_the_run(page: Any, sol: pc.Solution, browser: Any) -> None:
     page.click("tab-setup")
     field = browser.find_element("xpath", "//label[text()='damping (N m s/rad)']/..//input")
     page.do(
@@ -129,12 +115,11 @@ def test_sliders_change_parameters_and_the_run(
 
 @pytest.mark.parametrize(("name", "typed"), [("mass (kg)", "0.8"), ("length (m)", "0.35")])
 def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
-    sol: pc.Solution, opened: Open, browser: Any, name: str, typed: str
+    page: Any, browser: Any, name: str, typed: str
 ) -> None:
     """On the way to 0.8 the field holds 0."""
     from selenium.webdriver.common.keys import Keys
 
-    page = opened(sol)
     page.click("tab-setup")
     field = browser.find_element("xpath", f"//label[text()='{name}']/../input[@type='number']")
     field.send_keys(Keys.CONTROL, "a")
@@ -151,8 +136,7 @@ def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
     assert page.ask("pendcorePage.given.link[0].mass") > 0
 
 
-def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page: Any, sol: pc.Solution) -> None:
     page.do("pendcorePage.play(false); pendcorePage.go(2)")
     x, y = page.ask(
         "(() => { const { view, run } = pendcorePage; const p = run.places(2, run.state(2));"
@@ -167,10 +151,7 @@ def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(sol: pc.Solution, op
     assert page.text("bits").startswith("hash ")
 
 
-def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(
-    sol: pc.Solution, opened: Open
-) -> None:
-    page = opened(sol)
+def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page: Any) -> None:
     page.do("pendcorePage.given.link[0].length = -1; pendcorePage.changed()")
     assert page.text("bits") == ""
     assert page.text("trust") == "The picture is that of the last run that was possible."
@@ -197,8 +178,7 @@ def test_fixed_steps_keep_their_method_until_another_is_chosen(
     assert page.ask("'step' in pendcorePage.given.run") is False
 
 
-def test_effects_are_added_and_removed(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_effects_are_added_and_removed(page: Any) -> None:
     page.click("tab-setup")
     kinds = page.ask("Object.keys(pendcorePage.controls.defaults)")
     assert set(kinds) == {*pc.effects.kinds()} - {"user", "compiled_user"}
@@ -237,8 +217,7 @@ def test_an_impossible_parameter_is_refused_as_python_refuses_it(
     assert told.split(": ", 1)[-1].split(": ")[-1] == str(refused.value).split(": ")[-1]
 
 
-def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_methods_and_tolerances_are_chosen_in_the_page(page: Any, sol: pc.Solution) -> None:
     page.click("tab-accuracy")
     page.enter("#method select", "dop853")
     page.enter("#method input", "11", "input")
@@ -258,8 +237,7 @@ def choose(page: Any, menu: str, label: str) -> None:
     assert page.ask(f"document.getElementById('{menu}').value") == label
 
 
-def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_any_quantity_is_drawn_over_any_other(page: Any, sol: pc.Solution) -> None:
     phase = drawn(page)
     t = np.linspace(0, 8, len(phase[0]["x"]))
     states = sol(t)
@@ -282,8 +260,7 @@ def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) ->
     np.testing.assert_allclose(path["y"], tip[:, 1], atol=1e-10)
 
 
-def test_a_choice_survives_a_run_and_goes_with_its_link(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_a_choice_survives_a_run_and_goes_with_its_link(page: Any) -> None:
     choose(page, "up", "qd 2 (rad/s)")
     page.do("pendcorePage.given.start.q[0] = 0.5; pendcorePage.changed()")
     assert page.ask("document.getElementById('up').value") == "qd 2 (rad/s)"
@@ -347,8 +324,7 @@ def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
     assert page.complaints() == []
 
 
-def test_a_button_says_copied_for_a_while_and_then_its_name(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_a_button_says_copied_for_a_while_and_then_its_name(page: Any) -> None:
     page.click("copy-toml")
     page.click("copy-toml")
     assert page.text("copy-toml") == "Copied"

@@ -20,12 +20,6 @@ pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 MOST_BYTES = 900_000
 
 
-@pytest.fixture(scope="module")
-def sol() -> pc.Solution:
-    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
-
-
 def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path: Path) -> None:
     page = sol.to_html(tmp_path / "run.html", title="A <swing> & more").read_text()
     assert len(page.encode()) < MOST_BYTES
@@ -33,10 +27,7 @@ def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path
     assert not re.search(r"(src|href)=|https?://|@import|url\(", page)
 
 
-def test_it_opens_from_disk_and_asks_for_nothing(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
+def test_it_opens_from_disk_and_asks_for_nothing(page: Any, browser: Any) -> None:
     page.wait("pendcorePage.validUntil !== null")
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
@@ -80,9 +71,8 @@ def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, open
 
 
 def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
-    sol: pc.Solution, opened: Open, tmp_path: Path
+    page: Any, sol: pc.Solution, opened: Open, tmp_path: Path
 ) -> None:
-    page = opened(sol)
     page.click("tab-setup")
     page.do("pendcorePage.given.gravity = 3.7; pendcorePage.changed()")
     (tmp_path / "case.toml").write_text(page.copied("copy-toml"))
@@ -120,8 +110,7 @@ def test_an_address_that_is_refused_shows_the_run_of_the_page(
     assert page.text("bits").startswith("the bits of Python")
 
 
-def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_another_address_in_the_same_page_is_followed(page: Any) -> None:
     case = page.ask("structuredClone(pendcorePage.given)")
     case["gravity"] = 1.62
     page.do(f"location.hash = 'case=' + encodeURIComponent({json.dumps(json.dumps(case))})")
@@ -131,9 +120,8 @@ def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: 
     page.wait("location.hash.includes('dop853')")
 
 
-def test_what_the_worker_runs_is_freed(sol: pc.Solution, opened: Open) -> None:
+def test_what_the_worker_runs_is_freed(page: Any) -> None:
     """A thousand runs take no more memory than a few, here as in the worker."""
-    page = opened(sol)
     page.do(
         "window.bytes = () => pendcorePage.core.exports.memory.buffer.byteLength;"
         "for (let k = 0; k < 50; ++k) pendcorePage.changed();"
@@ -184,15 +172,13 @@ def test_it_is_pale_past_the_time_until_which_it_is_right(opened: Open) -> None:
     assert "pale after that" in page.text("trust")
 
 
-def test_the_ghost_starts_a_billionth_of_a_radian_away(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_the_ghost_starts_a_billionth_of_a_radian_away(page: Any) -> None:
     page.do("document.getElementById('ghost').click()")
     away = np.array(page.ask("[...pendcorePage.ghost.state(0)]")) - [0.8, 1.0, 0, 0]
     assert away == pytest.approx([0, 1e-9, 0, 0], abs=1e-15)
 
 
-def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_neighbours_are_the_runs_beside_this_one(page: Any, sol: pc.Solution) -> None:
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
     found = page.ask("[...pendcorePage.neighbours.angles.slice(60 * 2000, 60 * 2000 + 8)]")
@@ -201,16 +187,14 @@ def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open)
     assert found == pytest.approx(beside.q.ravel(), abs=1e-6)
 
 
-def test_the_ledger_is_drawn_beside_the_energies(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_the_ledger_is_drawn_beside_the_energies(page: Any, sol: pc.Solution) -> None:
     names = page.ask("pendcorePage.curves.energy.curves.map((one) => one.name)")
     assert names == ["kinetic", "potential", "total", "viscous (lost)"]
     total, lost = page.ask("[2, 3].map((k) => pendcorePage.curves.energy.curves[k].y.at(-1))")
     assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
 
 
-def test_what_accuracy_costs_is_measured(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_what_accuracy_costs_is_measured(page: Any) -> None:
     page.click("tab-accuracy")
     page.click("measure")
     page.wait("pendcorePage.measured !== undefined", 60)
