@@ -205,12 +205,9 @@ IMPOSSIBLE: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("change", IMPOSSIBLE)
-def test_an_impossible_parameter_is_refused_as_python_refuses_it(
-    sol: pc.Solution, opened: Open, change: str
-) -> None:
+def test_an_impossible_parameter_is_refused_as_python_refuses_it(page: Any, change: str) -> None:
     with pytest.raises(ValueError, match=r"\w") as refused:
         IMPOSSIBLE[change]()
-    page = opened(sol)
     page.do(f"pendcorePage.given.{change}; pendcorePage.changed()")
     assert page.ask("message.hidden") is False
     told = page.text("message")
