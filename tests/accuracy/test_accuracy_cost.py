@@ -47,6 +47,7 @@ def test_distances_are_those_of_joints_and_tip():
     expected = abs(tips(q, lengths) - tips(r, lengths)).max(axis=-1) / sum(lengths)
     assert scene.distances(q, r) == pytest.approx(expected, rel=1e-13)
     assert scene.distances(q, q + 2 * np.pi).max() < 1e-14
+    assert (scene.distances(q, q + np.array([1e-11, 0, 0])) >= 0).all()
     assert math.isnan(scene.distances([math.nan, 0, 0], [0, 0, 0]))
 
 
@@ -162,6 +163,7 @@ def test_the_figure_has_a_line_a_method_with_its_unit_and_shades_what_is_not_kno
     lines = book.plot(y=y)
     ax = lines[0].axes
     assert [line.get_label() for line in lines] == [*dict.fromkeys(p.method for p in book)]
+    assert len({(line.get_linestyle(), line.get_marker()) for line in lines}) == len(lines)
     unit = re.search(r"time of a run \((\w+)\)", ax.get_ylabel())
     factor = {"\N{MICRO SIGN}s": 1e6, "ms": 1e3, "s": 1.0}[unit[1]] if unit else 1.0
     for line in lines:

@@ -102,6 +102,7 @@ def test_position_limits_are_shares_of_the_length() -> None:
     case = chaotic_starts()[1]
     run = solved(case, method="dopri5", rtol=1e-7)
     found = run.estimate_error()
+    assert found.verified_by == "taylor at rtol 1e-09 and tighter"
     at = run.valid_until(0.05, of="position")
     k = int(np.searchsorted(found.t, at))
     assert found.position[: k + 1].max() <= 0.05

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from matplotlib.figure import Figure
 from pendcore._figures.plot import KINDS, save_figure
 from pendcore._figures.poses import forces_on_links
+from runs_that_kept_little import axes
 
 BOOK = pc.Scene.textbook()
 DRAG = pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)
@@ -19,10 +19,6 @@ DRAG = pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)
 def sol() -> pc.Solution:
     down = pc.events.LinkAngle(1, np.pi / 2)
     return pc.simulate(BOOK, (0, 5), [0.8, 1.0], events=[down], ledger=True)
-
-
-def axes(rows: int = 1) -> Any:
-    return Figure().subplots(rows, 1, squeeze=False)[:, 0]
 
 
 def test_rates_are_those_of_the_run_in_rad_per_second(sol: pc.Solution) -> None:

@@ -57,21 +57,14 @@ def joints(n: int) -> Array:
     return np.eye(n) - np.eye(n, k=-1)
 
 
-def held(m: Array, forces: Array, limits: dict[int, float]) -> tuple[Array, dict[int, int]]:
-    """Accelerations, and what the joints (from 0) at rest with these limits of friction do.
-
-    A joint at 0 sticks; a joint at 1 or -1 begins to slide that way. `forces` includes the friction
-    of joints that slide already.
-    """
-    return resting(m, forces, {j: (-limit, limit) for j, limit in limits.items()})
-
-
 def resting(
     m: Array, forces: Array, ranges: dict[int, tuple[float, float]]
 ) -> tuple[Array, dict[int, int]]:
-    """The same for joints whose supports can exert torques within these ranges.
+    """Accelerations, and what joints (from 0) at rest do whose supports have ranges of torque.
 
-    It tries every pattern; the one without contradiction is the answer.
+    A joint at 0 sticks; a joint at 1 or -1 begins to slide that way. `forces` includes the friction
+    of joints that slide already. It tries every pattern; the one without contradiction is the
+    answer.
     """
     d = joints(len(m))
     best: tuple[float, Any, Any] = (np.inf, None, None)
@@ -101,8 +94,8 @@ def resting(
 def held_accelerations(
     m: Array, forces: Array, limits: dict[int, float]
 ) -> tuple[Array, frozenset[int]]:
-    """The same, with the joints that stick."""
-    qdd, pattern = held(m, forces, limits)
+    """Accelerations, and the joints that stick, where friction has these limits."""
+    qdd, pattern = resting(m, forces, {j: (-limit, limit) for j, limit in limits.items()})
     return qdd, frozenset(j for j, sign in pattern.items() if sign == 0)
 
 

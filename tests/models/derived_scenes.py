@@ -1,30 +1,15 @@
-"""Scenes that can be derived in symbols, random states, and what the core says of both."""
+"""Scenes that are derived in symbols, random states, and what the core says of both."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pendcore as pc
 from pendcore import effects as fx
+from symbolic_scenes import Floats, scene, states
 
-Floats = npt.NDArray[np.float64]
 STATES = 12
-
-
-def links(n: int, seed: int, uniform: bool = False) -> list[pc.Link]:
-    """Links of random numbers, uniform rods or any."""
-    rng = np.random.default_rng(seed)
-    found = []
-    for _ in range(n):
-        mass, length = (float(x) for x in rng.uniform(0.4, 2.0, 2))
-        own = {} if uniform else {
-            "center": length * float(rng.uniform(0.2, 0.8)),
-            "inertia": mass * length**2 * float(rng.uniform(0.05, 0.15)),
-        }  # fmt: skip
-        found.append(pc.Link(mass=mass, length=length, **own))
-    return found
 
 
 def smooth_effects(n: int) -> list[fx.Effect]:
@@ -44,14 +29,13 @@ def smooth_effects(n: int) -> list[fx.Effect]:
     ]
 
 
-SCENES: dict[str, pc.Scene] = {"textbook": pc.Scene.textbook()}
+LOCKED = [fx.Lock(joint=2), fx.ViscousJoint(joint=1, damping=0.2)]
+SCENES = {"textbook": pc.Scene.textbook()}
 for _n in (1, 2, 3):
-    SCENES[f"rods_{_n}"] = pc.Scene(links=links(_n, _n, uniform=True), gravity=3.7)
-    SCENES[f"links_{_n}"] = pc.Scene(links=links(_n, 10 + _n))
-    SCENES[f"effects_{_n}"] = pc.Scene(links=links(_n, 20 + _n), effects=smooth_effects(_n))
-SCENES["locked"] = pc.Scene(
-    links=links(3, 30), effects=[fx.Lock(joint=2), fx.ViscousJoint(joint=1, damping=0.2)]
-)
+    SCENES[f"rods_{_n}"] = scene("none, uniform rods", _n, seed=1)
+    SCENES[f"links_{_n}"] = scene("none", _n, seed=2)
+    SCENES[f"effects_{_n}"] = scene("none", _n, seed=3).replace(effects=smooth_effects(_n))
+SCENES["locked"] = scene("none", 3, seed=4).replace(effects=LOCKED)
 """By names that every language allows."""
 
 
@@ -69,15 +53,11 @@ class Known:
 
 def known(scene: pc.Scene) -> Known:
     """Draw states, and ask the core."""
-    n, rng = len(scene.links), np.random.default_rng(len(repr(scene)))
-    t, q = rng.uniform(0.0, 5.0, STATES), rng.uniform(-4.0, 4.0, (STATES, n))
-    qd = rng.uniform(-4.0, 4.0, (STATES, n))
-    for effect in scene.effects:
-        if effect.kind == "lock":
-            qd[:, effect.joint - 1] = qd[:, effect.joint - 2]
+    drawn = states(scene, seed=len(repr(scene)), count=STATES)
+    t, q, qd = (np.array([getattr(one, name) for one in drawn]) for name in ("t", "q", "qd"))
     forces, energies = [], []
-    for time, angles, rates in zip(t, q, qd, strict=True):
-        at = pc.simulate(scene, q0=angles, qd0=rates, t_span=(time, time))
+    for one in drawn:
+        at = pc.simulate(scene, q0=one.q, qd0=one.qd, t_span=(one.t, one.t))
         forces.append(at.reactions()[0])
         energies.append([at.energy().kinetic[0], at.energy().potential[0]])
     return Known(t, q, qd, scene.accelerations(t, q, qd), np.array(forces), np.array(energies))

@@ -6,7 +6,7 @@ a metre that is a factor of a thousand or so. `any_runs` has the wild runs.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from typing import Any
 
@@ -36,6 +36,17 @@ def any_runs(draw: st.DrawFn) -> Drawn:
         return drawn_run.drawn(FromHypothesis(draw))
     except ValueError:
         reject()
+
+
+INTERVALS = {
+    "exponent": (1, 3),
+    **dict.fromkeys(("angular_frequency", "stribeck_velocity"), (0.1, 3)),
+    **dict.fromkeys(("mass", "armature", "limit", "static"), (0.5, 2)),
+    **dict.fromkeys(("amplitude", "x", "y"), (-0.3, 0.3)),
+    **dict.fromkeys(("torque", "constant"), (-2, 2)),
+    **dict.fromkeys(("inertia", "kd"), (0, 0.1)),
+}
+"""The intervals of parameters that are no angles and not from 0 to 0.5."""
 
 
 class Rounded:
@@ -79,22 +90,7 @@ class Gentle(SceneMaker):
         return [self.first - 0.25 + scale * sum(gaps[:k]) for k in range(points)]
 
     def number(self, p: Any) -> float:
-        real = self.choices.real
-        if p.unit == "rad":
-            return real(-2, 2)
-        if p.name == "exponent":
-            return real(1, 3)
-        if p.name in ("angular_frequency", "stribeck_velocity"):
-            return real(0.1, 3)
-        if p.name in ("mass", "armature", "limit", "static"):
-            return real(0.5, 2)
-        if p.name in ("amplitude", "x", "y"):
-            return real(-0.3, 0.3)
-        if p.name == "torque" or p.name == "constant":
-            return real(-2, 2)
-        if p.name in ("inertia", "kd"):
-            return real(0, 0.1)
-        return real(0, 0.5)
+        return self.choices.real(*((-2, 2) if p.unit == "rad" else INTERVALS.get(p.name, (0, 0.5))))
 
 
 def motion(choices: Choices, kinds: Collection[str], links: int = 4) -> Drawn:
@@ -133,15 +129,6 @@ def _count(choices: Choices, known: list[str]) -> int:
     return choices.integer(1, min(4, len(known))) if known else 0
 
 
-@st.composite
-def motions(draw: st.DrawFn, kinds: Collection[str] = SMOOTH) -> Drawn:
-    """Return any of these motions."""
-    try:
-        return motion(Rounded(FromHypothesis(draw)), kinds)
-    except ValueError:
-        reject()
-
-
 def stopped_motion(
     choices: Choices, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
 ) -> Drawn:
@@ -157,27 +144,38 @@ def stopped_motion(
 
 
 @st.composite
-def stopped_motions(
-    draw: st.DrawFn, kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
-) -> Drawn:
-    """Return any of these motions."""
+def _drawn(draw: st.DrawFn, make: Callable[..., Drawn], *given: Any) -> Drawn:
     try:
-        return stopped_motion(Rounded(FromHypothesis(draw)), kinds, restitutions)
+        return make(Rounded(FromHypothesis(draw)), *given)
     except ValueError:
         reject()
 
 
-def stopped_motion_of_seed(seed: str) -> Drawn:
-    """Return a motion with stops; the next seed's where its parts do not agree."""
+def motions(kinds: Collection[str] = SMOOTH) -> st.SearchStrategy[Drawn]:
+    """Return any of these motions."""
+    return _drawn(motion, kinds)
+
+
+def stopped_motions(
+    kinds: Collection[str] = SMOOTH, restitutions: tuple[float, ...] = (0.0, 0.5)
+) -> st.SearchStrategy[Drawn]:
+    """Return any of these motions with stops."""
+    return _drawn(stopped_motion, kinds, restitutions)
+
+
+def _of_seed(seed: str, make: Callable[..., Drawn], *given: Any) -> Drawn:
+    """Return the motion of a seed; the next seed's where its parts do not agree."""
     try:
-        return stopped_motion(Rounded(FromSeed(seed)))
+        return make(Rounded(FromSeed(seed)), *given)
     except ValueError:
-        return stopped_motion_of_seed(f"{seed}, once more")
+        return _of_seed(f"{seed}, once more", make, *given)
 
 
 def motion_of_seed(seed: str, kind: str) -> Drawn:
-    """Return a motion under an effect of a kind; the next seed's where its parts do not agree."""
-    try:
-        return motion(Rounded(FromSeed(seed)), [kind])
-    except ValueError:
-        return motion_of_seed(f"{seed}, once more", kind)
+    """Return a motion under an effect of a kind."""
+    return _of_seed(seed, motion, [kind])
+
+
+def stopped_motion_of_seed(seed: str) -> Drawn:
+    """Return a motion with stops."""
+    return _of_seed(seed, stopped_motion)

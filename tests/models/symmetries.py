@@ -82,33 +82,24 @@ def in_units(drawn: Drawn, units: Units) -> Drawn:
         return _each(value, lambda x: x * units.factor(unit))
 
     scene = drawn.scene
+    units_of = {"mass": "kg", "length": "m", "center": "m", "inertia": "kg m^2"}
     links = [
-        pc.Link(
-            mass=link.mass * units.kg,
-            length=link.length * units.m,
-            center=link.center * units.m,
-            inertia=link.inertia * units.factor("kg m^2"),
-        )
+        pc.Link(**{x: getattr(link, x) * units.factor(unit) for x, unit in units_of.items()})
         for link in scene.links
     ]
-    other = with_effects(
-        scene,
-        [changed(effect, scale) for effect in scene.effects],
-        links=links,
-        gravity=scene.gravity * units.factor("m/s^2"),
-    )
-    n = len(links)
-    options = dict(drawn.options)
-    for name in ("first_step", "max_step", "step"):
-        if name in options:
-            options[name] *= units.s
-    options["atol"] = [options["atol"]] * n + [options["atol"] / units.s] * n
-    return Drawn(
-        other,
-        drawn.q0,
-        [x / units.s for x in drawn.qd0],
-        (drawn.t_span[0] * units.s, drawn.t_span[1] * units.s),
-        options,
+    gravity = scene.gravity * units.factor("m/s^2")
+    effects = [changed(effect, scale) for effect in scene.effects]
+    steps = {"first_step", "max_step", "step"} & {*drawn.options}
+    options = drawn.options | {name: drawn.options[name] * units.s for name in steps}
+    n, atol = len(links), options["atol"]
+    options["atol"] = [atol] * n + [atol / units.s] * n
+    begin, end = drawn.t_span
+    return replace(
+        drawn,
+        scene=with_effects(scene, effects, links=links, gravity=gravity),
+        qd0=[x / units.s for x in drawn.qd0],
+        t_span=(begin * units.s, end * units.s),
+        options=options,
     )
 
 

@@ -80,6 +80,26 @@ class Opened:
     def click(self, name: str) -> None:
         self.browser.find_element("id", name).click()
 
+    def enter(self, selector: str, value: str, event: str = "change") -> None:
+        """Give a menu or a field a value, as its reader does."""
+        self.do(
+            f"const one = document.querySelector({selector!r}); one.value = {value!r};"
+            f"one.dispatchEvent(new Event({event!r}))"
+        )
+
+    def drag(self, *places: tuple[float, float]) -> None:
+        """Press at the first place of the window, move to the others, and let go."""
+        from selenium.webdriver.common.action_chains import ActionChains
+
+        mouse = ActionChains(self.browser)
+        pointer = mouse.w3c_actions.pointer_action
+        for k, (x, y) in enumerate(places):
+            pointer.move_to_location(round(x), round(y))
+            if k == 0:
+                pointer.pointer_down()
+        pointer.pointer_up()
+        mouse.perform()
+
     def copied(self, button: str) -> str:
         self.do("pendcorePage.copied = null")
         self.do(f"document.getElementById({button!r}).click()")
@@ -99,3 +119,15 @@ def opened(browser: Any, tmp_path: Path) -> Callable[..., Opened]:
         return Opened(browser, solution.to_html(tmp_path / "run.html"), fragment)
 
     return open_page
+
+
+@pytest.fixture(scope="session")
+def sol() -> pc.Solution:
+    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
+    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
+
+
+@pytest.fixture
+def page(sol: pc.Solution, opened: Callable[..., Opened]) -> Opened:
+    """Return the page of this solution, opened."""
+    return opened(sol)

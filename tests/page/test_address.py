@@ -95,71 +95,74 @@ def test_every_option_and_effect_that_a_page_can_have_is_known(page: Any) -> Non
     assert json.loads(found["text"]) == case
 
 
-def hostile(case: Any) -> Iterator[tuple[Any, str]]:
-    """Yield cases, and what is said of them."""
+def changed(case: Any, path: tuple[Any, ...], value: Any) -> Any:
+    """Return a case with another value at the end of a path."""
+    made = {"case": deepcopy(case)}
+    place: Any = made
+    *way, last = ("case", *path)
+    for key in way:
+        place = place[key]
+    place[last] = value
+    return made["case"]
 
-    def changed(*path: Any, value: Any) -> Any:
-        made = deepcopy(case)
-        place = made
-        for key in path[:-1]:
-            place = place[key]
-        place[path[-1]] = value
-        return made
 
-    yield changed("link", 0, HOSTILE_KEY, value=1), "link 1: there is no"
-    yield changed(LINES, value=1), "there is no"
-    yield changed("effect", 0, HOSTILE_KEY, value=1), "effect 1: there is no"
-    yield changed("effect", 3, "sinusoid", HOSTILE_KEY, value=1), "effect 4: sinusoid: there is no"
-    yield changed("run", HOSTILE_KEY, value=1), "run: there is no"
-    yield changed("run", "events", value=[]), "run: there is no"
-    yield changed("start", LINES, value=1), "start: there is no"
-    yield changed("__proto__", value={"link": [{}]}), "there is no"
-    yield changed("link", 0, "__proto__", value={"mass": 1}), "link 1: there is no"
-    yield changed("link", 0, "constructor", value=1), "link 1: there is no"
-    yield changed("effect", 0, "kind", value="user"), "effect 1: kind: is none"
-    yield changed("effect", 0, "kind", value=""), "effect 1: kind: is none"
-    yield changed("effect", 0, "kind", value="toString"), "effect 1: kind: is none"
-    yield changed("effect", 0, "kind", value=["viscous_joint"]), "effect 1: kind: is none"
-    yield changed("effect", 0, "joint", value="1, damping=print(1)"), "effect 1: joint: must be a"
-    yield changed("effect", 0, "joint", value=1.5), "effect 1: joint: must be a whole number"
-    yield changed("effect", 0, "damping", value={"__class__": 1}), "effect 1: damping: must be a n"
-    yield changed("effect", 0, "damping", value=None), "effect 1: damping is missing"
-    yield changed("effect", 1, "range", value=["print(1)", 1]), "effect 2: range: must be two"
-    yield changed("effect", 1, "range", value=[0, 1, 2]), "effect 2: range: must be two numbers"
-    yield changed("effect", 3, "sinusoid", value=3), "effect 4: sinusoid: must be a table"
-    yield changed("effect", 3, "sinusoid", value=[{}]), "effect 4: sinusoid: must be a table"
-    yield changed("effect", 4, "table", "t", value=["a"]), "effect 5: table: t: must be a list of n"
-    yield changed("effect", 0, value=None), "effect 1: kind: is none"
-    yield changed("effect", value={"length": 0}), "effect: must be a list"
-    yield changed("gravity", value="9.8) or print(1"), "gravity: must be a number"
-    yield changed("gravity", value=[9.8]), "gravity: must be a number"
-    yield changed("name", value=5), "name: must be text"
-    yield changed("name", value="half \ud83d of a pair"), "name: must be text"
-    yield changed("link", value="ab"), "link: must be a list"
-    yield changed("link", value={"length": 2}), "link: must be a list"
-    yield changed("link", value=[]), "link: must be a list"
-    yield changed("link", value=[None, None]), "link 1: must be a table"
-    yield changed("link", value=[[], 3]), "link 1: must be a table"
-    yield changed("link", 0, "mass", value=True), "link 1: mass: must be a number"
-    yield changed("link", 0, value={}), "link 1: mass is missing"
-    yield changed("start", "q", value=[1]), "start: q: must be 2 finite numbers"
-    yield changed("start", "q", value=["inf", 1]), "start: q: must be 2 finite numbers"
-    yield changed("start", "qd", value="ab"), "start: qd: must be 2 finite numbers"
-    yield changed("start", value=None), "start is missing"
-    yield changed("run", "t_end", value="inf"), "run: t_end: must be a finite number"
-    yield changed("run", "t_start", value="0"), "run: t_start: must be a finite number"
-    yield changed("run", "method", value='auto", x=print(1), y="'), "run: method: must be one of"
-    yield changed("run", "method", value={"a": 1}), "run: method: must be one of"
-    yield changed("run", "store", value="disk"), "run: store: must be one of"
-    yield changed("run", "rtol", value=["1e-9"]), "run: rtol: must be a number, or a list"
-    yield changed("run", "ledger", value=1), "run: ledger: must be true or false"
-    yield changed("run", value=[]), "run: must be a table"
-    for whole in (None, 5, "case", [], {}):
-        yield whole, "link: must be a list"
+HOSTILE: list[tuple[tuple[Any, ...], Any, str]] = [
+    (("link", 0, HOSTILE_KEY), 1, "link 1: there is no"),
+    ((LINES,), 1, "there is no"),
+    (("effect", 0, HOSTILE_KEY), 1, "effect 1: there is no"),
+    (("effect", 3, "sinusoid", HOSTILE_KEY), 1, "effect 4: sinusoid: there is no"),
+    (("run", HOSTILE_KEY), 1, "run: there is no"),
+    (("run", "events"), [], "run: there is no"),
+    (("start", LINES), 1, "start: there is no"),
+    (("__proto__",), {"link": [{}]}, "there is no"),
+    (("link", 0, "__proto__"), {"mass": 1}, "link 1: there is no"),
+    (("link", 0, "constructor"), 1, "link 1: there is no"),
+    (("effect", 0, "kind"), "user", "effect 1: kind: is none"),
+    (("effect", 0, "kind"), "", "effect 1: kind: is none"),
+    (("effect", 0, "kind"), "toString", "effect 1: kind: is none"),
+    (("effect", 0, "kind"), ["viscous_joint"], "effect 1: kind: is none"),
+    (("effect", 0, "joint"), "1, damping=print(1)", "effect 1: joint: must be a"),
+    (("effect", 0, "joint"), 1.5, "effect 1: joint: must be a whole number"),
+    (("effect", 0, "damping"), {"__class__": 1}, "effect 1: damping: must be a n"),
+    (("effect", 0, "damping"), None, "effect 1: damping is missing"),
+    (("effect", 1, "range"), ["print(1)", 1], "effect 2: range: must be two"),
+    (("effect", 1, "range"), [0, 1, 2], "effect 2: range: must be two numbers"),
+    (("effect", 3, "sinusoid"), 3, "effect 4: sinusoid: must be a table"),
+    (("effect", 3, "sinusoid"), [{}], "effect 4: sinusoid: must be a table"),
+    (("effect", 4, "table", "t"), ["a"], "effect 5: table: t: must be a list of n"),
+    (("effect", 0), None, "effect 1: kind: is none"),
+    (("effect",), {"length": 0}, "effect: must be a list"),
+    (("gravity",), "9.8) or print(1", "gravity: must be a number"),
+    (("gravity",), [9.8], "gravity: must be a number"),
+    (("name",), 5, "name: must be text"),
+    (("name",), "half \ud83d of a pair", "name: must be text"),
+    (("link",), "ab", "link: must be a list"),
+    (("link",), {"length": 2}, "link: must be a list"),
+    (("link",), [], "link: must be a list"),
+    (("link",), [None, None], "link 1: must be a table"),
+    (("link",), [[], 3], "link 1: must be a table"),
+    (("link", 0, "mass"), True, "link 1: mass: must be a number"),
+    (("link", 0), {}, "link 1: mass is missing"),
+    (("start", "q"), [1], "start: q: must be 2 finite numbers"),
+    (("start", "q"), ["inf", 1], "start: q: must be 2 finite numbers"),
+    (("start", "qd"), "ab", "start: qd: must be 2 finite numbers"),
+    (("start",), None, "start is missing"),
+    (("run", "t_end"), "inf", "run: t_end: must be a finite number"),
+    (("run", "t_start"), "0", "run: t_start: must be a finite number"),
+    (("run", "method"), 'auto", x=print(1), y="', "run: method: must be one of"),
+    (("run", "method"), {"a": 1}, "run: method: must be one of"),
+    (("run", "store"), "disk", "run: store: must be one of"),
+    (("run", "rtol"), ["1e-9"], "run: rtol: must be a number, or a list"),
+    (("run", "ledger"), 1, "run: ledger: must be true or false"),
+    (("run",), [], "run: must be a table"),
+]
+"""Where a case is changed, to what, and what is said of it."""
 
 
 def test_a_hostile_case_is_refused_as_a_whole_and_told_why(page: Any) -> None:
-    cases, wanted = zip(*hostile(page["case"]), strict=True)
+    rows = [*HOSTILE, *(((), whole, "link: must be a list") for whole in (None, 5, "case", [], {}))]
+    cases = [changed(page["case"], path, value) for path, value, _ in rows]
+    wanted = [told for _, _, told in rows]
     for found, told in zip(read(page, *map(address, cases)), wanted, strict=True):
         assert found.keys() == {"refused"}, (found, told)
         assert found["refused"].startswith(told)
@@ -197,23 +200,16 @@ def test_what_is_let_in_is_never_more_than_calls_of_known_names(page: Any) -> No
         'x") or print(1)', "inf", -0.0, 1e308, -5, 0, True, None, [], {}, [None], [1, "2"],
         {HOSTILE_KEY: 1}, [[[]]], "\n[run]\n", '"""', "\x7f\x00\u2028", "\ud800",
     ]  # fmt: skip
-    cases = []
-    for path in places(page["case"]):
-        for value in strange:
-            made = deepcopy({"case": page["case"]})
-            place: Any = made
-            for key in ("case", *path)[:-1]:
-                place = place[key]
-            place[("case", *path)[-1]] = value
-            cases.append(made["case"])
+    case = page["case"]
+    cases = [changed(case, path, value) for path in places(case) for value in strange]
     found = read(page, *map(address, cases))
     let_in = [one for one in found if "refused" not in one]
     assert len(cases) > 1000
     assert 20 < len(let_in) < len(cases) / 2
     for one in let_in:
         check_python(one["python"])
-        case = with_infinities(json.loads(one["text"]))
-        assert {"effect": []} | tomllib.loads(one["toml"]) == case
+        text = with_infinities(json.loads(one["text"]))
+        assert {"effect": []} | tomllib.loads(one["toml"]) == text
 
 
 def check_python(text: str) -> None:

@@ -14,18 +14,10 @@ Open = Callable[..., Any]
 pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 
 
-@pytest.fixture(scope="module")
-def sol() -> pc.Solution:
-    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
-
-
 @pytest.mark.parametrize("size", ["desktop", "phone"])
 def test_dragging_the_tip_starts_the_run_elsewhere(
-    sol: pc.Solution, opened: Open, browser: Any, sized: Callable[[str], None], size: str
+    sol: pc.Solution, opened: Open, sized: Callable[[str], None], size: str
 ) -> None:
-    from selenium.webdriver.common.action_chains import ActionChains
-
     sized(size)
     page = opened(sol)
     page.do("pendcorePage.go(0)")
@@ -36,27 +28,19 @@ def test_dragging_the_tip_starts_the_run_elsewhere(
         " return [p[4] * view.pixels, p[5] * view.pixels,"
         " left + view.center[0], top + view.center[1]] })()"
     )
-    drag = ActionChains(browser)
-    drag.w3c_actions.pointer_action.move_to_location(round(left + x), round(top + y))
-    drag.w3c_actions.pointer_action.pointer_down()
-    drag.w3c_actions.pointer_action.move_to_location(round(left + x - 40), round(top + y - 60))
-    drag.w3c_actions.pointer_action.pointer_up()
-    drag.perform()
+    page.drag((left + x, top + y), (left + x - 40, top + y - 60))
     moved = page.ask("pendcorePage.given.start.q")
     assert moved[0] == 0.8
-    wanted = np.arctan2(
-        y - 60 - page.ask("pendcorePage.view.pixels") * np.sin(0.8),
-        x - 40 - page.ask("pendcorePage.view.pixels") * np.cos(0.8),
-    )
+    metre = page.ask("pendcorePage.view.pixels")
+    wanted = np.arctan2(y - 60 - metre * np.sin(0.8), x - 40 - metre * np.cos(0.8))
     assert moved[1] == pytest.approx(wanted, abs=0.05)
     run = pc.simulate(sol.scene, q0=moved, t_span=(0, 8))
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
-def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any) -> None:
+def test_keys_play_step_and_go_home(page: Any, browser: Any) -> None:
     from selenium.webdriver.common.keys import Keys
 
-    page = opened(sol)
     page.do("pendcorePage.play(false); pendcorePage.go(1)")
     scene = browser.find_element("id", "scene")
     scene.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
@@ -70,12 +54,7 @@ def test_keys_play_step_and_go_home(sol: pc.Solution, opened: Open, browser: Any
     assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
 
 
-def test_the_picture_is_enlarged_moved_and_fitted_again(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    page = opened(sol)
+def test_the_picture_is_enlarged_moved_and_fitted_again(page: Any, browser: Any) -> None:
     page.do("pendcorePage.play(false); pendcorePage.go(0)")
     view = "(() => { const { view } = pendcorePage; return [view.pixels, ...view.center] })()"
     start = page.ask("[...pendcorePage.given.start.q]")
@@ -90,36 +69,28 @@ def test_the_picture_is_enlarged_moved_and_fitted_again(
         "(() => { const { view } = pendcorePage; view.canvas.scrollIntoView();"
         " const { left, top } = view.canvas.getBoundingClientRect(); return [left, top] })()"
     )
-    mouse = ActionChains(browser)
-    mouse.w3c_actions.pointer_action.move_to_location(round(left + 15), round(top + 15))
-    mouse.w3c_actions.pointer_action.pointer_down()
-    mouse.w3c_actions.pointer_action.move_to_location(round(left + 45), round(top + 35))
-    mouse.w3c_actions.pointer_action.pointer_up()
-    mouse.perform()
+    page.drag((left + 15, top + 15), (left + 45, top + 35))
     assert page.ask(view) == pytest.approx([fitted[0], fitted[1] + 30, fitted[2] + 20])
     assert page.ask("[...pendcorePage.given.start.q]") == start
 
-    wheel = (
-        (
+    def turn_the_wheel(ctrl: str) -> None:
+        page.do(
             "pendcorePage.view.canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: -100,"
-            " ctrlKey: CTRL, cancelable: true, clientX: LEFT + 40, clientY: TOP + 50 }))"
+            f" ctrlKey: {ctrl}, cancelable: true, clientX: {left} + 40, clientY: {top} + 50 }}))"
         )
-        .replace("LEFT", str(left))
-        .replace("TOP", str(top))
-    )
+
     place = "pendcorePage.view.metres(40, 50)"
     before = page.ask(place)
-    page.do(wheel.replace("CTRL", "false"))
+    turn_the_wheel("false")
     assert page.ask(view)[0] == pytest.approx(fitted[0])
-    page.do(wheel.replace("CTRL", "true"))
+    turn_the_wheel("true")
     assert page.ask(view)[0] == pytest.approx(fitted[0] * np.exp(0.2))
     assert page.ask(place) == pytest.approx(before, abs=0.02)
     scene.send_keys("0")
     assert page.ask(view) == pytest.approx(fitted)
 
 
-def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_every_control_has_a_name(page: Any) -> None:
     nameless = page.ask(
         "[...document.querySelectorAll('button, input, select, canvas')].filter((one) =>"
         " !(one.getAttribute('aria-label') || one.labels?.length || one.textContent.trim()))"
@@ -128,10 +99,7 @@ def test_every_control_has_a_name(sol: pc.Solution, opened: Open) -> None:
     assert nameless == []
 
 
-def test_sliders_change_parameters_and_the_run(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
+def test_sliders_change_parameters_and_the_run(page: Any, sol: pc.Solution, browser: Any) -> None:
     page.click("tab-setup")
     field = browser.find_element("xpath", "//label[text()='damping (N m s/rad)']/..//input")
     page.do(
@@ -140,20 +108,18 @@ def test_sliders_change_parameters_and_the_run(
         " f.value = '0.5'; f.dispatchEvent(new Event('input'))"
     )
     assert field.get_attribute("value") == "0.5"
-    damped = pc.effects.ViscousJoint(joint=2, damping=0.5)
-    scene = sol.scene.replace(effects=[damped])
-    run = pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 8))
+    damped = sol.scene.replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.5)])
+    run = pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
 @pytest.mark.parametrize(("name", "typed"), [("mass (kg)", "0.8"), ("length (m)", "0.35")])
 def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
-    sol: pc.Solution, opened: Open, browser: Any, name: str, typed: str
+    page: Any, browser: Any, name: str, typed: str
 ) -> None:
     """On the way to 0.8 the field holds 0."""
     from selenium.webdriver.common.keys import Keys
 
-    page = opened(sol)
     page.click("tab-setup")
     field = browser.find_element("xpath", f"//label[text()='{name}']/../input[@type='number']")
     field.send_keys(Keys.CONTROL, "a")
@@ -170,12 +136,7 @@ def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
     assert page.ask("pendcorePage.given.link[0].mass") > 0
 
 
-def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    page = opened(sol)
+def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page: Any, sol: pc.Solution) -> None:
     page.do("pendcorePage.play(false); pendcorePage.go(2)")
     x, y = page.ask(
         "(() => { const { view, run } = pendcorePage; const p = run.places(2, run.state(2));"
@@ -183,21 +144,14 @@ def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(
         " return [left + view.center[0] + p[4] * view.pixels,"
         " top + view.center[1] + p[5] * view.pixels] })()"
     )
-    tap = ActionChains(browser)
-    tap.w3c_actions.pointer_action.move_to_location(round(x), round(y))
-    tap.w3c_actions.pointer_action.pointer_down()
-    tap.w3c_actions.pointer_action.pointer_up()
-    tap.perform()
+    page.drag((x, y))
     q = page.ask("pendcorePage.given.start.q")
     assert q == [*sol(2.0)[:2]]
     assert page.ask("[...pendcorePage.run.state(0)]") == [*q, 0, 0]
     assert page.text("bits").startswith("hash ")
 
 
-def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(
-    sol: pc.Solution, opened: Open
-) -> None:
-    page = opened(sol)
+def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page: Any) -> None:
     page.do("pendcorePage.given.link[0].length = -1; pendcorePage.changed()")
     assert page.text("bits") == ""
     assert page.text("trust") == "The picture is that of the last run that was possible."
@@ -219,16 +173,12 @@ def test_fixed_steps_keep_their_method_until_another_is_chosen(
     run = pc.simulate(sol.scene, q0=0.8, t_span=(0, 4), method="rk4", step=0.01)
     page = opened(run)
     assert page.ask("document.querySelector('#method select').value") == "rk4"
-    page.do(
-        "const s = document.querySelector('#method select'); s.value = 'dop853';"
-        "s.dispatchEvent(new Event('change'))"
-    )
+    page.enter("#method select", "dop853")
     assert page.ask("message.hidden")
     assert page.ask("'step' in pendcorePage.given.run") is False
 
 
-def test_effects_are_added_and_removed(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_effects_are_added_and_removed(page: Any) -> None:
     page.click("tab-setup")
     kinds = page.ask("Object.keys(pendcorePage.controls.defaults)")
     assert set(kinds) == {*pc.effects.kinds()} - {"user", "compiled_user"}
@@ -245,41 +195,29 @@ def test_effects_are_added_and_removed(sol: pc.Solution, opened: Open) -> None:
     assert page.ask("message.hidden")
 
 
-@pytest.mark.parametrize(
-    ("change", "scene"),
-    [
-        ("gravity = -Infinity", lambda: pc.Scene.textbook().replace(gravity=-np.inf)),
-        (
-            "link[0].length = -1",
-            lambda: pc.Scene(links=[pc.Link(mass=1.0, length=-1.0, center=0.5)]),
-        ),
-        (
-            "effect.push({kind: 'joint_stop', joint: 1, range: [1, 0.5], restitution: 0.5})",
-            lambda: pc.effects.JointStop(joint=1, range=(1, 0.5), restitution=0.5),
-        ),
-    ],
-)
-def test_an_impossible_parameter_is_refused_as_python_refuses_it(
-    sol: pc.Solution, opened: Open, change: str, scene: Callable[[], object]
-) -> None:
+IMPOSSIBLE: dict[str, Callable[[], object]] = {
+    "gravity = -Infinity": lambda: pc.Scene.textbook().replace(gravity=-np.inf),
+    "link[0].length = -1": lambda: pc.Scene(links=[pc.Link(mass=1.0, length=-1.0, center=0.5)]),
+    "effect.push({kind: 'joint_stop', joint: 1, range: [1, 0.5], restitution: 0.5})": (
+        lambda: pc.effects.JointStop(joint=1, range=(1, 0.5), restitution=0.5)
+    ),
+}
+
+
+@pytest.mark.parametrize("change", IMPOSSIBLE)
+def test_an_impossible_parameter_is_refused_as_python_refuses_it(page: Any, change: str) -> None:
     with pytest.raises(ValueError, match=r"\w") as refused:
-        scene()
-    page = opened(sol)
+        IMPOSSIBLE[change]()
     page.do(f"pendcorePage.given.{change}; pendcorePage.changed()")
     assert page.ask("message.hidden") is False
     told = page.text("message")
     assert told.split(": ", 1)[-1].split(": ")[-1] == str(refused.value).split(": ")[-1]
 
 
-def test_methods_and_tolerances_are_chosen_in_the_page(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_methods_and_tolerances_are_chosen_in_the_page(page: Any, sol: pc.Solution) -> None:
     page.click("tab-accuracy")
-    page.do(
-        "const s = document.querySelector('#method select'); s.value = 'dop853';"
-        "s.dispatchEvent(new Event('change'));"
-        "const f = document.querySelector('#method input'); f.value = '11';"
-        "f.dispatchEvent(new Event('input'))"
-    )
+    page.enter("#method select", "dop853")
+    page.enter("#method input", "11", "input")
     run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), method="dop853", rtol=1e-11)
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
@@ -292,15 +230,11 @@ def drawn(page: Any) -> list[dict[str, Any]]:
 
 
 def choose(page: Any, menu: str, label: str) -> None:
-    page.do(
-        f"const menu = document.getElementById('{menu}'); menu.value = '{label}';"
-        "menu.dispatchEvent(new Event('change'))"
-    )
+    page.enter(f"#{menu}", label)
     assert page.ask(f"document.getElementById('{menu}').value") == label
 
 
-def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_any_quantity_is_drawn_over_any_other(page: Any, sol: pc.Solution) -> None:
     phase = drawn(page)
     t = np.linspace(0, 8, len(phase[0]["x"]))
     states = sol(t)
@@ -323,8 +257,7 @@ def test_any_quantity_is_drawn_over_any_other(sol: pc.Solution, opened: Open) ->
     np.testing.assert_allclose(path["y"], tip[:, 1], atol=1e-10)
 
 
-def test_a_choice_survives_a_run_and_goes_with_its_link(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_a_choice_survives_a_run_and_goes_with_its_link(page: Any) -> None:
     choose(page, "up", "qd 2 (rad/s)")
     page.do("pendcorePage.given.start.q[0] = 0.5; pendcorePage.changed()")
     assert page.ask("document.getElementById('up').value") == "qd 2 (rad/s)"
@@ -388,8 +321,7 @@ def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
     assert page.complaints() == []
 
 
-def test_a_button_says_copied_for_a_while_and_then_its_name(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_a_button_says_copied_for_a_while_and_then_its_name(page: Any) -> None:
     page.click("copy-toml")
     page.click("copy-toml")
     assert page.text("copy-toml") == "Copied"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Callable
+import sys
 from html import unescape
 from typing import Any
 from xml.etree import ElementTree
@@ -32,48 +33,37 @@ def objects(sol: pc.Solution) -> dict[str, Any]:
     }
 
 
-NAMES = ("solution", "scene", "explanation", "accuracy", "ensemble")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_an_object_is_shown_by_a_short_table_that_is_whole(name: str, sol: pc.Solution) -> None:
-    told = objects(sol)[name]._repr_html_()
-    ElementTree.fromstring(f"<div>{told}</div>")  # every tag is closed
-    assert "<table>" in told
-    assert len(told) < 20_000
-    assert not re.search(r"\bnan\b|None|object at", told)
-
-
-def test_tables_hold_the_numbers_with_their_units(sol: pc.Solution) -> None:
+def test_objects_are_shown_by_short_tables_that_are_whole_and_have_units(sol: pc.Solution) -> None:
     told = {name: one._repr_html_() for name, one in objects(sol).items()}
-    assert "9.807 m/s^2" in told["scene"]
-    assert "damping=0.05" in told["scene"]
-    assert "frequencies (rad/s)" in told["explanation"]
-    assert "Bending of the links" in told["explanation"]
-    assert "1.0e-06 of the total length" in told["accuracy"]
-    assert "kept" in told["accuracy"]
-    assert "3 members (3,)" in told["ensemble"]
-    assert "last q" in told["solution"]
+    for table in told.values():
+        ElementTree.fromstring(f"<div>{table}</div>")  # every tag is closed
+        assert "<table>" in table
+        assert len(table) < 20_000
+        assert not re.search(r"\bnan\b|None|object at", table)
+    for name, part in (
+        ("scene", "9.807 m/s^2"),
+        ("scene", "damping=0.05"),
+        ("explanation", "frequencies (rad/s)"),
+        ("accuracy", "1.0e-06 of the total length"),
+        ("accuracy", "kept"),
+        ("ensemble", "3 members (3,)"),
+        ("solution", "last q"),
+    ):
+        assert part in told[name]
 
 
 def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
-    told = sol._repr_html_()
-    lines = re.findall(r"<polyline points='([^']+)' fill='none' stroke='(\w+|#\w+)'", told)
-    assert [stroke for _, stroke in lines] == ["#1f5fa8"] + ["currentColor"] * 6
-    last = np.array([pair.split(",") for pair in lines[-1][0].split()], dtype=float)
-    true = sol.positions()[-1]
-    scale = np.hypot(*(last[1] - last[0]))  # a link is 1 m
-    assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
-
-
-def test_the_last_pose_is_drawn_last_in_a_run_of_many_times() -> None:
-    run = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 60))
-    assert len(run.t) > 450
-    told = re.findall(r"points='([^']+)'", run._repr_html_())
-    last = np.array([pair.split(",") for pair in told[-1].split()], dtype=float)
-    true = run.positions()[-1]
-    scale = np.hypot(*(last[1] - last[0]))
-    assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
+    long = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 60))
+    assert len(long.t) > 450
+    for run in (sol, long):
+        drawn = re.findall(
+            r"<polyline points='([^']+)' fill='none' stroke='(\w+|#\w+)'", run._repr_html_()
+        )
+        assert [stroke for _, stroke in drawn] == ["#1f5fa8"] + ["currentColor"] * 6
+        last = np.array([pair.split(",") for pair in drawn[-1][0].split()], dtype=float)
+        true = run.positions()[-1]
+        scale = np.hypot(*(last[1] - last[0]))  # a link is 1 m
+        assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
 
 
 def test_what_is_not_finite_is_left_out_of_a_drawing() -> None:
@@ -108,8 +98,8 @@ def test_the_page_lives_in_a_frame(
 def waited(browser: Any, expression: str) -> Any:
     from selenium.webdriver.support.ui import WebDriverWait
 
-    ask: Callable[[Any], Any] = lambda one: one.execute_script(f"return {expression}")  # noqa: E731
-    return WebDriverWait(browser, 20, 0.05).until(ask)
+    wait = WebDriverWait(browser, 20, 0.05)
+    return wait.until(lambda one: one.execute_script(f"return {expression}"))
 
 
 @pytest.mark.unsanitized
@@ -126,7 +116,7 @@ def test_the_widget_tells_python_what_its_reader_does(
         "<!doctype html><body><div id='here'></div><script type='module'>"
         + widget._esm.replace("export default { render };", "")
         + "const values = { page: "
-        + repr_js(widget.page)
+        + json.dumps(widget.page).replace("</", "<\\/")
         + ", height: 640 };"
         "window.values = values;"
         "const model = { get: (name) => values[name], set: (name, x) => { values[name] = x },"
@@ -146,16 +136,10 @@ def test_the_widget_tells_python_what_its_reader_does(
     assert widget.case == {"effect": [{"range": [-np.inf, 1]}]}
 
 
-def repr_js(text: str) -> str:
-    import json
-
-    return json.dumps(text).replace("</", "<\\/")
-
-
 def test_a_widget_without_its_package_says_what_is_missing(
     sol: pc.Solution, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "anywidget", None)
+    monkeypatch.setitem(sys.modules, "anywidget", None)
     with pytest.raises(ImportError, match=r"anywidget is missing \(pip: anywidget\)"):
         sol.widget()
 

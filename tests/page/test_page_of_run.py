@@ -20,12 +20,6 @@ pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 MOST_BYTES = 900_000
 
 
-@pytest.fixture(scope="module")
-def sol() -> pc.Solution:
-    damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
-    return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
-
-
 def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path: Path) -> None:
     page = sol.to_html(tmp_path / "run.html", title="A <swing> & more").read_text()
     assert len(page.encode()) < MOST_BYTES
@@ -33,20 +27,14 @@ def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path
     assert not re.search(r"(src|href)=|https?://|@import|url\(", page)
 
 
-def test_it_opens_from_disk_and_asks_for_nothing(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    page = opened(sol)
+def test_it_opens_from_disk_and_asks_for_nothing(page: Any, browser: Any) -> None:
     page.wait("pendcorePage.validUntil !== null")
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
     assert page.complaints() == []
     log = [json.loads(one["message"])["message"] for one in browser.get_log("performance")]
-    asked = [
-        one["params"]["request"]["url"]
-        for one in log
-        if one["method"] == "Network.requestWillBeSent"
-    ]
+    sent = [one["params"] for one in log if one["method"] == "Network.requestWillBeSent"]
+    asked = [one["request"]["url"] for one in sent]
     assert [url for url in asked if not url.startswith(("file:", "blob:"))] == []
     assert sum(url.startswith("file:") for url in asked) == 1
 
@@ -64,22 +52,17 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     told = page.text("bits")
     assert told == f"the bits of Python: hash {run._run.fingerprint} = {run._run.fingerprint}"
     states = np.array(page.ask("[1.7, 3.9].map((t) => [...pendcorePage.run.state(t)])"))
-    assert np.array_equal(states, pc.simulate(
-        run.scene, q0=start["q0"], qd0=start["qd0"], t_span=(start["t0"], start["t_end"]),
-        on_failure="ignore", **options,
-    )([1.7, 3.9]).T)  # fmt: skip
+    assert np.array_equal(states, run([1.7, 3.9]).T)
 
 
 def test_a_hash_that_is_not_pythons_is_told(
     sol: pc.Solution, opened: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    plain = html._plain_case
     monkeypatch.setattr(html, "_plain_case", lambda *_: {**plain(*_), "gravity": 9.8})
     told = opened(sol).text("bits")
     assert told.startswith("not the bits of Python: hash ")
     assert told.endswith(f"Python's {sol._run.fingerprint}")
-
-
-plain = html._plain_case
 
 
 def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, opened: Open) -> None:
@@ -88,9 +71,8 @@ def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, open
 
 
 def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
-    sol: pc.Solution, opened: Open, tmp_path: Path
+    page: Any, sol: pc.Solution, opened: Open, tmp_path: Path
 ) -> None:
-    page = opened(sol)
     page.click("tab-setup")
     page.do("pendcorePage.given.gravity = 3.7; pendcorePage.changed()")
     (tmp_path / "case.toml").write_text(page.copied("copy-toml"))
@@ -128,23 +110,18 @@ def test_an_address_that_is_refused_shows_the_run_of_the_page(
     assert page.text("bits").startswith("the bits of Python")
 
 
-def test_another_address_in_the_same_page_is_followed(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_another_address_in_the_same_page_is_followed(page: Any) -> None:
     case = page.ask("structuredClone(pendcorePage.given)")
     case["gravity"] = 1.62
     page.do(f"location.hash = 'case=' + encodeURIComponent({json.dumps(json.dumps(case))})")
     page.wait("pendcorePage.given.gravity === 1.62")
-    page.do(
-        "const s = document.querySelector('#method select'); s.value = 'dop853';"
-        "s.dispatchEvent(new Event('change'))"
-    )
+    page.enter("#method select", "dop853")
     assert page.ask("pendcorePage.given.run.method") == "dop853"
     page.wait("location.hash.includes('dop853')")
 
 
-def test_what_the_worker_runs_is_freed(sol: pc.Solution, opened: Open) -> None:
+def test_what_the_worker_runs_is_freed(page: Any) -> None:
     """A thousand runs take no more memory than a few, here as in the worker."""
-    page = opened(sol)
     page.do(
         "window.bytes = () => pendcorePage.core.exports.memory.buffer.byteLength;"
         "for (let k = 0; k < 50; ++k) pendcorePage.changed();"
@@ -195,15 +172,13 @@ def test_it_is_pale_past_the_time_until_which_it_is_right(opened: Open) -> None:
     assert "pale after that" in page.text("trust")
 
 
-def test_the_ghost_starts_a_billionth_of_a_radian_away(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_the_ghost_starts_a_billionth_of_a_radian_away(page: Any) -> None:
     page.do("document.getElementById('ghost').click()")
     away = np.array(page.ask("[...pendcorePage.ghost.state(0)]")) - [0.8, 1.0, 0, 0]
     assert away == pytest.approx([0, 1e-9, 0, 0], abs=1e-15)
 
 
-def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_neighbours_are_the_runs_beside_this_one(page: Any, sol: pc.Solution) -> None:
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
     found = page.ask("[...pendcorePage.neighbours.angles.slice(60 * 2000, 60 * 2000 + 8)]")
@@ -212,16 +187,14 @@ def test_neighbours_are_the_runs_beside_this_one(sol: pc.Solution, opened: Open)
     assert found == pytest.approx(beside.q.ravel(), abs=1e-6)
 
 
-def test_the_ledger_is_drawn_beside_the_energies(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_the_ledger_is_drawn_beside_the_energies(page: Any, sol: pc.Solution) -> None:
     names = page.ask("pendcorePage.curves.energy.curves.map((one) => one.name)")
     assert names == ["kinetic", "potential", "total", "viscous (lost)"]
     total, lost = page.ask("[2, 3].map((k) => pendcorePage.curves.energy.curves[k].y.at(-1))")
     assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
 
 
-def test_what_accuracy_costs_is_measured(sol: pc.Solution, opened: Open) -> None:
-    page = opened(sol)
+def test_what_accuracy_costs_is_measured(page: Any) -> None:
     page.click("tab-accuracy")
     page.click("measure")
     page.wait("pendcorePage.measured !== undefined", 60)
@@ -236,15 +209,15 @@ def test_what_accuracy_costs_is_measured(sol: pc.Solution, opened: Open) -> None
 def test_whoever_wants_less_motion_gets_a_page_that_waits(
     sol: pc.Solution, opened: Open, browser: Any
 ) -> None:
-    browser.execute_cdp_cmd(
-        "Emulation.setEmulatedMedia",
-        {"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]},
-    )
+    def emulate(*features: dict[str, str]) -> None:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [*features]})
+
+    emulate({"name": "prefers-reduced-motion", "value": "reduce"})
     try:
         page = opened(sol)
         assert (page.text("play"), page.ask("pendcorePage.isPlaying")) == ("Play", False)
     finally:
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+        emulate()
     assert opened(sol).text("play") == "Pause"
 
 

@@ -16,10 +16,10 @@ SCENE = pc.Scene(links=[ROD])
 @pytest.mark.parametrize(
     ("option", "message"),
     [
-        ({"rtoll": 1e-6}, "no option of a run is called 'rtoll': did you mean 'rtol'?"),
-        ({"tspan": (0, 1)}, "no option of a run is called 'tspan': did you mean 't_span'?"),
-        ({"tend": 3}, "no option of a run is called 'tend': did you mean 't_span'?"),
-        ({"xyzzy": 1}, "no option of a run is called 'xyzzy': known are scene, t_span, q0, qd0, "),
+        ({"rtoll": 1e-6}, "simulate has no argument 'rtoll': did you mean 'rtol'?"),
+        ({"tspan": (0, 1)}, "simulate has no argument 'tspan': did you mean 't_span'?"),
+        ({"tend": 3}, "simulate has no argument 'tend': did you mean 't_span'?"),
+        ({"xyzzy": 1}, "simulate has no argument 'xyzzy': known are scene, t_span, q0, qd0, "),
     ],
 )
 def test_a_misspelled_option_is_met_with_the_one_that_is_meant(option, message):

@@ -113,7 +113,7 @@ def simulate(
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
     if error is not None:
-        require_options(asked)
+        require_options(asked, simulate)
         start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(start, error, asked), on_failure)
     progress = asked.pop("progress", None)
@@ -121,7 +121,7 @@ def simulate(
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn)
     except TypeError:
-        require_options(asked)
+        require_options(asked, simulate)
         raise
     solution = Solution(scene, run)
     if run.success:

@@ -8,7 +8,7 @@ documentation are made from them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from inspect import Parameter, signature
 from textwrap import fill
 from typing import Any, NamedTuple, TypeVar
@@ -94,16 +94,13 @@ def limits_of_every_method(option: RunOption) -> bool:
     return option.limits_every_method
 
 
-def require_options(
-    given: Mapping[str, object], wanted: Callable[[RunOption], bool] = lambda option: True
-) -> None:
-    """Raise a TypeError for a keyword that is none of the wanted options."""
-    known = ["scene", "t_span", "q0", "qd0"]
-    known += [name for name, option in OPTIONS.items() if wanted(option)]
+def require_options(given: Iterable[str], function: Callable[..., Any]) -> None:
+    """Raise a TypeError for a keyword that is none of a function's, whose options are shown."""
+    known = [*signature(function).parameters]
     for name in given:
         if name not in known:
             remedy = did_you_mean(name, known)
-            raise TypeError(f"no option of a run is called {name!r}: {remedy}")
+            raise TypeError(f"{function.__name__} has no argument {name!r}: {remedy}")
 
 
 def with_options(

@@ -114,7 +114,7 @@ def accuracy_cost(
     >>> f"{best.method} at {best.setting}"
     'dop853 at rtol 1e-09'
     """
-    require_options(limits, limits_of_every_method)
+    require_options(limits, accuracy_cost)
     require_scene(scene)
     n = len(scene.links)
     span = time_span(t_span)
