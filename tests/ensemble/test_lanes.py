@@ -166,7 +166,7 @@ VARIED = {  # links, effects, methods, and the parameters that differ from lane 
 @pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", VARIED)
 def test_parameters_differ_from_lane_to_lane(name):
-    """Of a wave of amplitude 0 or a drag of 0, the member has other equations, and runs alone."""
+    """A wave or a drag of 0 gives its member other equations: it runs alone."""
     n, effects, methods, names = VARIED[name]
     names = [*LINKS, *(each for each in names if each not in LINKS)]
     values = pc.sampling.uniform(0.5, 2.0, (21, len(names)), seed=6)
