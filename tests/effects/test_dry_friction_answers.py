@@ -175,27 +175,3 @@ def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
     np.testing.assert_allclose(side * (sol(at_turns)[0] - rest), turns, atol=1e-10)
     # No step strides over a turning point.
     assert np.abs(sol.t - at_turns[:, None]).min(axis=1).max() < 1e-9
-
-
-@pytest.mark.parametrize("q", [0.0, 0.9, 2.5, -2.0])
-def test_friction_holds_a_rod_at_rest_if_and_only_if_it_can(q: float, method: str) -> None:
-    needed = abs(M * G * L / 2 * np.cos(q))
-    for share, holds in ((1 + 1e-9, True), (1 - 1e-9, False)):
-        scene = rod(fx.DryJointFriction(1, coulomb=share * needed), gravity=G)
-        sol = pc.simulate(scene, q0=q, qd0=0, t_span=(0, 1.0), method=method)
-        if holds:
-            assert_rests(sol)
-            assert time_of_rest(sol) == 0.0
-            assert sol.q[-1, 0] == q
-        else:
-            assert sol.status == "finished" or time_of_rest(sol) > 0.0
-            assert np.sign(sol.q[-1, 0] - q) == np.sign(np.cos(q))
-
-
-def test_static_friction_above_the_sliding_one_holds_and_once_broken_does_not(method: str) -> None:
-    scene = rod(fx.Motor(joint=1, constant=0.5), friction(0.4, 0.6, 0.01, 2.0))
-    assert_rests(pc.simulate(scene, q0=0.0, qd0=0.0, t_span=(0, 1), method=method))
-    slid = pc.simulate(scene, q0=0.0, qd0=0.1, t_span=(0, 10), rtol=1e-10, method=method)
-    assert slid.status == "finished"
-    # In sliding 0.1 N m are left over; the Stribeck peak is passed from above within 0.01 rad/s.
-    assert slid.qd[-1, 0] == pytest.approx(0.1 + 0.1 * 10 / J, rel=1e-6)

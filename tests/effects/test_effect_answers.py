@@ -13,13 +13,10 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
 import pytest
-from described_scenes import scene_of
 from numpy.typing import NDArray
 from pendcore import effects as fx
-from reference.effects import law
-from reference.newton_euler import Body, uniform_rod
-from reference.random_rigs import address_of, polynomial
-from reference.rig import LOSSES, Rig
+from reference.random_rigs import address_of
+from reference.rig import LOSSES
 
 Array = NDArray[np.float64]
 OfTime = Callable[[Array, float], Array]
@@ -42,96 +39,6 @@ def solve(scene: pc.Scene, q: Any, qd: Any, t_end: float = 5.0, **options: Any) 
     assert sol.success
     return sol
 
-
-# One instant ------------------------------------------------------------------------------------
-
-SINE = {"amplitude": 2, "angular_frequency": 1}
-PD = {"kp": 3, "kd": 0.5, "reference": 1}
-STEP = {"t": [0, 0.4, 0.4, 2], "torque": [1, 2, 9, 9]}
-RAMP = {"t": [0, 1, 2], "torque": [1, 2, 9]}
-DRAG = {"link": 1, "drag_coefficient": 2.0, "diameter": 0.1, "air_density": 1.0}  # k = 0.1 kg/m^2
-STRIBECK = {"coulomb": 0.7, "static": 1.7, "stribeck_velocity": 4.5, "exponent": 3}
-COUPLES: list[tuple[str, dict[str, Any], float]] = [  # at 0.4 s, -2.4 rad and -4.5 rad/s, N m
-    ("viscous_joint", {"damping": 0.2}, 0.9),
-    ("viscous_joint", {"damping": 0.2, "damping2": 0.1, "damping3": 0.02}, 4.7475),
-    ("dry_joint_friction", {"coulomb": 0.7}, 0.7),
-    ("dry_joint_friction", STRIBECK, 0.7 + np.exp(-1)),
-    ("torsional_spring", {"stiffness": 2.0}, 4.8),
-    ("torsional_spring", {"stiffness": 2.0, "rest_angle": 0.5}, 5.8),
-    ("motor", {"constant": 3.0}, 3.0),
-    ("motor", {"constant": -3.0, "limit": 2.0}, -2.0),
-    ("motor", {"sinusoid": SINE}, 2 * np.sin(0.4)),
-    ("motor", {"table": RAMP}, 1.4),
-    ("motor", {"table": RAMP | {"hold": True}}, 1.0),
-    ("motor", {"table": STEP}, 9.0),
-    ("motor", {"table": {"t": [0, 0.4, 2], "torque": [1, 2, 9]}}, 2.0),
-    ("motor", {"pd": PD}, 3 * 3.4 + 0.5 * 4.5),
-    ("motor", {"pd": PD, "limit": 8}, 8.0),
-    ("rod_drag", DRAG, 0.1 * 4.5**2 / 4),  # the integral of k (w s)^2 s
-    ("user", {"function": polynomial(0.3, -0.2, 1.1)}, 0.12 + 1.1 * 4.5),
-    ("compiled_user", {"address": address_of(0.3, -0.2, 1.1)}, 0.12 + 1.1 * 4.5),
-]
-
-
-@pytest.mark.every_value("kind")
-@pytest.mark.parametrize(("kind", "told", "couple"), COUPLES)
-def test_a_couple_turns_a_rod_of_1_kg_m2(kind: str, told: dict[str, Any], couple: float) -> None:
-    """The core's law and the reference's."""
-    at = {} if "user" in kind or "link" in told else {"joint": 1}
-    described, state = (kind, {**at, **told}), (0.4, [-2.4], [-4.5])
-    bodies = [uniform_rod(3, 1)]
-    found = scene_of(bodies, 0.0, [described]).accelerations(*state)
-    reference = Rig(bodies=bodies, gravity=0.0, effects=[law(described)]).motion(*state)
-    assert found.item() == pytest.approx(couple, rel=1e-14)
-    assert reference.accelerations[0] == pytest.approx(couple, rel=1e-14)
-
-
-def test_wind_turns_a_rod_into_it_as_a_vane() -> None:
-    """At rest along the wind it stays; an angle x off it, w = V sin x on all of the rod.
-
-    Without damping of its own the drag is of second order there: k V abs(V) x L^2/2 at rest.
-    """
-    wind, k = 8.0, 1.225 * 1.2 * 0.05 / 2
-    scene = rod(fx.RodDrag(link=1, drag_coefficient=1.2, diameter=0.05, wind=(wind, 0.0)))
-    np.testing.assert_array_equal(scene.accelerations(0, [0.0], [0.0]), [0.0])
-    for x in (1e-3, -1e-3, DOWN, -DOWN):
-        moment = -np.sign(x) * k * (wind * np.sin(x)) ** 2 * L**2 / 2
-        np.testing.assert_allclose(scene.accelerations(0, [x], [0.0]), [moment / J], rtol=1e-12)
-
-
-UNLIKE = [Body(1.3, 0.8, 0.5, 0.02), uniform_rod(0.7, 1.1)]
-C = (2.0 * 0.4 + 3.0 * 1.0) / 5.0
-HEAVIER = Body(5.0, 1.0, C, 0.1 + 2.0 * (C - 0.4) ** 2 + 0.2 + 3.0 * (1.0 - C) ** 2)
-FALL = {"t": [0.0, 1.0, 2.0], "x": [0.0] * 3, "y": [0.0, -1.0, 0.0]}  # at 1 s, 3 m/s^2 downward
-ONE, TWO = ([0.7], [2.0]), ([0.7, 0.7], [2.0, 2.0])
-SAME: dict[str, list[tuple[list[Body], float, list[Any], Any]]] = {
-    "two rods locked straight are one": [
-        ([uniform_rod(2.0, 0.5)] * 2, 9.8, [("lock", {"joint": 2})], TWO),
-        ([uniform_rod(4.0, 1.0)], 9.8, [], ONE),
-    ],
-    "a payload is a heavier link": [
-        ([Body(2.0, 1.0, 0.4, 0.1)], 9.8, [("payload", {"mass": 3.0, "inertia": 0.2})], ONE),
-        ([HEAVIER], 9.8, [], ONE),
-    ],
-    "in free fall nothing has weight": [
-        (UNLIKE, 3.0, [("driven_pivot", {"spline": FALL})], ([0.3, -2.1], [1.5, -3.0])),
-        (UNLIKE, 0.0, [], ([0.3, -2.1], [1.5, -3.0])),
-    ],
-}
-
-
-@pytest.mark.parametrize("name", SAME)
-def test_an_effect_moves_a_scene_as_another_scene_moves(name: str) -> None:
-    (qdd, reactions), (expected, others) = (
-        (sol.accelerations()[0], sol.reactions()[0])
-        for bodies, gravity, described, state in SAME[name]
-        for sol in [pc.simulate(scene_of(bodies, gravity, described), (1.0, 1.0), *state)]
-    )
-    np.testing.assert_allclose(qdd, np.broadcast_to(expected, qdd.shape), rtol=1e-12)
-    np.testing.assert_allclose(reactions[: len(others)], others, rtol=1e-12)
-
-
-# Functions of time ------------------------------------------------------------------------------
 
 B, STIFFNESS, REST, TORQUE, W = 0.3, 4.0, 0.7, 0.8, 3.0
 DECAY = 1.3 * 1.2 * 0.05 / 2 * L**4 / (4 * J)  # of the drag's acceleration, DECAY w^2
@@ -256,19 +163,6 @@ def test_a_table_of_torques_is_followed_exactly_however_loose_the_tolerance(limi
     assert sol.stats.accepted < 60
 
 
-def test_a_clipped_sinusoid_is_met_where_it_is_clipped() -> None:
-    torque = fx.Sinusoid(amplitude=2.0, angular_frequency=3.0)
-    sol = solve(rod(fx.Motor(joint=1, sinusoid=torque, limit=1.0)), 0.0, 0.0, rtol=1e-9)
-    first = np.arcsin(0.5) / 3
-    edges = np.array(
-        [first, *(k * np.pi / 3 + side * first for k in range(1, 5) for side in (1, -1))]
-    )
-    assert np.abs(sol.t - edges[:, None]).min(axis=1).max() < 1e-10
-    given = np.clip(2 * np.sin(3 * np.linspace(0, 5, 200001)), -1, 1)
-    impulse = np.trapezoid(given, dx=5 / 200000)
-    np.testing.assert_allclose(sol.qd[-1], impulse / J, rtol=1e-7)
-
-
 def test_a_limited_servo_goes_along_a_parabola_and_then_rings_down() -> None:
     """PD: full torque until kp (r - q) - kd qd meets the limit, a damped oscillation from there."""
     kp, kd, r, limit = 2.0, 1.1, 2.0, 0.9
@@ -345,15 +239,6 @@ def test_a_rod_on_a_shaken_pivot_swings_at_the_shaking_frequency() -> None:
     forced = -M * L / 2 / J * w**2 * amplitude / (square - w**2)
     x = forced * (np.sin(w * T) - w / own * np.sin(own * T))
     np.testing.assert_allclose((sol(T)[0] - DOWN) / amplitude, x / amplitude, atol=1e-8)
-
-
-def test_a_pivot_on_a_spline_lands_on_its_knots() -> None:
-    knots, x = np.array([0.0, 0.4, 1.1, 2.3, 3.0]), [0.0, 0.1, -0.2, 0.1, 0.0]
-    spline = fx.Spline(t=knots, x=x, y=[0.0] * 5)
-    sol = solve(rod(fx.DrivenPivot(spline=spline), gravity=G), 0.0, 0.0, 3.0)
-    at = np.isin(sol.t, knots)
-    assert at.sum() == len(knots)
-    np.testing.assert_allclose(sol.positions()[at, 0, 0], x, atol=1e-15)
 
 
 # Time -------------------------------------------------------------------------------------------

@@ -152,39 +152,6 @@ def test_every_entry_is_the_integral_of_its_power() -> None:
         assert getattr(ledger, name)[-1] == pytest.approx(energy, rel=1e-8, abs=1e-9)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 5])
-@pytest.mark.parametrize("bare", [True, False])
-def test_keeping_a_ledger_changes_no_bit_of_the_motion(n: int, bare: bool) -> None:
-    bodies = [uniform_rod(1.0 + 0.1 * i, 0.5) for i in range(n)]
-    described = [
-        (kind, told)
-        for kind, told in ALL
-        if max(told.get("joint", 1), told.get("link", 1)) <= n and not bare
-    ]
-    scene = scene_of(bodies, G, described)
-    start = np.linspace(0.2, 1.5, n), np.linspace(-1, 2, n)
-    runs = [pc.simulate(scene, (0.0, 3.0), *start, ledger=ledger) for ledger in (True, False)]
-    np.testing.assert_array_equal(runs[0].t, runs[1].t)
-    np.testing.assert_array_equal(runs[0].y, runs[1].y)
-    assert runs[0].stats.rejected == runs[1].stats.rejected
-    times = np.linspace(0, 3, 50)
-    np.testing.assert_array_equal(runs[0](times), runs[1](times))
-
-
-def test_a_run_that_kept_no_ledger_has_none() -> None:
-    assert simulate(ALL, t_end=0.1, ledger=False).energy().ledger is None
-
-
-@pytest.mark.parametrize("store", ["dense", "steps", "end"])
-def test_a_resumed_run_books_on_as_if_it_had_never_stopped(store: str) -> None:
-    whole = simulate(ALL, t_end=3.0, rtol=1e-9, store=store)
-    halves = simulate(ALL, t_end=1.0, rtol=1e-9, store=store).resume(3.0)
-    np.testing.assert_array_equal(whole.y, halves.y)
-    first, second = whole.energy().ledger, halves.energy().ledger
-    for name in [*entries(first), "residual"]:
-        np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
-
-
 def test_the_ledger_at_given_times_is_that_of_the_steps_there_and_closes() -> None:
     """Between steps it closes as well as the dense output allows."""
     steps = simulate(ALL, t_end=3.0, rtol=1e-9, store="steps")

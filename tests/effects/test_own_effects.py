@@ -164,20 +164,6 @@ def test_an_exception_passes_through_with_the_run_so_far(store):
     assert broken is None or len(broken.t) <= 1
 
 
-def test_a_run_that_its_function_broke_off_can_be_resumed():
-    patience = [1.0]
-
-    def impatient(t, q, qd):
-        if t > patience[0]:
-            raise OutOfAirError
-        return damp(t, q, qd)
-
-    with pytest.raises(OutOfAirError) as stop:
-        run(fx.User(impatient))
-    patience[0] = 9.0
-    assert np.array_equal(stop.value.solution.resume(2.0).y, run(fx.User(damp)).y)
-
-
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "rk4", "radau5"])
 def test_a_run_that_its_function_broke_off_ends_at_its_last_step(method):
     """The run ends there even where the function fails at the end of a step that was kept."""

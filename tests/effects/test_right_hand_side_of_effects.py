@@ -10,6 +10,9 @@ reference has forty digits; what its solution costs in doubles is nobody's error
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Callable, Sequence
+
 import numpy as np
 import pendcore as pc
 import pytest
@@ -17,15 +20,16 @@ from described_scenes import scene_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
-from reference.arithmetic import multiple_precision
+from reference.arithmetic import Number, multiple_precision
 from reference.effects import LAWS, Described, law
 from reference.effects.torsional_spring import TorsionalSpring
+from reference.instant import Instant
 from reference.newton_euler import Body
 from reference.random_rigs import START, DrawnRig, rigs
 from reference.rig import Rig
 
 TOLERANCE = 1e-12
-FORTY = multiple_precision(40)
+FORTY, FIFTY = multiple_precision(40), multiple_precision(50)
 ROUNDING_OF_THE_REFERENCE = 1e-36
 KINDS = sorted(pc.effects.kinds())
 
@@ -139,3 +143,61 @@ def test_many_instants_at_once(n: int) -> None:
     np.testing.assert_array_equal(scene.accelerations(t, q, qd), alone)
     at_one_state = scene.accelerations(t, q[0], qd[0])
     np.testing.assert_array_equal(at_one_state[3], scene.accelerations(t[3], q[0], qd[0]))
+
+
+# The reference itself ---------------------------------------------------------------------------
+
+S = FIFTY.number("1e-13")
+
+
+def slope(f: Callable[[Number], Number]) -> Number:
+    """Differentiate at 0, to about 25 digits."""
+    return (f(S) - f(-S)) / (2 * S)
+
+
+def plus(values: list[Number], s: Number, direction: Sequence[Number]) -> list[Number]:
+    return [x + s * d for x, d in zip(values, direction, strict=True)]
+
+
+def check_lagrange(drawn: DrawnRig) -> None:
+    """d/dt dT/dqd_i - dT/dq_i + dV/dq_i is the generalised force of q_i, for every link i."""
+    bodies, gravity, described, state = drawn
+    laws = [law(one) for one in described]
+    rig = Rig(bodies=bodies, gravity=gravity, effects=laws, arithmetic=FIFTY)
+    t = FIFTY.number(state[0])
+    q, qd = ([FIFTY.number(x) for x in values] for values in state[1:])
+    motion, loads = rig.motion(t, q, qd), rig.loads(rig.instant(t, q, qd))
+    # A spring's couple is among the loads: it must not count twice.
+    others = [effect for effect in rig.effects if not isinstance(effect, TorsionalSpring)]
+    rig = dataclasses.replace(rig, effects=others)
+
+    def unit(i: int) -> list[Number]:
+        return [FIFTY.number(i == k) for k in range(len(q))]
+
+    def momentum(i: int, s: Number) -> Number:
+        then, rates = plus(q, s, qd), plus(qd, s, motion.accelerations)
+        return slope(lambda r: rig.energy(t + s, then, plus(rates, r, unit(i))).kinetic)
+
+    def lagrangian(i: int, s: Number) -> Number:
+        kinetic, potential = rig.energy(t, plus(q, s, unit(i)), qd)
+        return kinetic - potential
+
+    for i in range(len(q)):
+        # How the mass centres move as q_i alone grows, and what does work then.
+        alone = Instant(bodies=rig.bodies, gravity=0.0, q=q, qd=unit(i), arithmetic=FIFTY)
+        force = loads.couples[i].value
+        force += motion.holding.get(i + 1, 0) - motion.holding.get(i + 2, 0)
+        for link, (fx, fy) in enumerate(loads.forces, start=1):
+            center = alone.mass_center(link)
+            force += fx.value * center.vx + fy.value * center.vy
+        left = slope(lambda s, i=i: momentum(i, s)) - slope(lambda s, i=i: lagrangian(i, s))
+        assert abs(left - force) < 1e-18 * (1 + loads.couples[i].size)
+
+
+@pytest.mark.every_value("kind")
+@pytest.mark.parametrize("kind", [*KINDS, "all"])
+@settings(max_examples=10, deadline=None)
+@given(data=st.data())
+def test_newton_and_euler_agree_with_lagrange(kind: str, data: st.DataObject) -> None:
+    kinds = KINDS if kind == "all" else [kind]
+    check_lagrange(data.draw(rigs(kinds, st.sampled_from([1, 2, 3, 5]))))

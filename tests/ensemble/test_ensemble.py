@@ -106,6 +106,7 @@ def test_a_member_that_was_not_run_says_so():
     how = {"time_limit": 1e-9, "on_failure": "ignore", "chunk": 1}
     with ThreadPoolExecutor(1) as pool:
         found = pc.ensemble(BOOK, q0=starts(5, 2, 1, 2.0), t_span=(0, 1), executor=pool, **how)
+    assert found.ending == "time_limit"
     assert found.status[4] == "not_run"
     assert found.message(4).startswith("was not run: ")
 

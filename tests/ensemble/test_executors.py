@@ -66,14 +66,6 @@ def test_processes_that_die_are_told():
             pc.ensemble(BOOK, q0=STARTS, executor=pool, **how)
 
 
-def test_a_time_limit_ends_the_whole():
-    how = {"t_span": (0, 3000), "chunk": 1, "time_limit": 0.05, "on_failure": "ignore"}
-    with ThreadPoolExecutor(1) as pool:
-        found = pc.ensemble(BOOK, q0=STARTS, executor=pool, **how)
-    assert found.ending == "time_limit"
-    assert found.counts().get("not_run", 0) > 0
-
-
 def kill_a_worker(client, path):
     """Kill one of the processes when the store has its first chunk."""
     pids = client.run(os.getpid)

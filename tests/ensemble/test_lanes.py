@@ -9,7 +9,6 @@ from members_and_runs import (
     ALL,
     BOOK,
     EFFECTS,
-    SWITCHING,
     assert_runs,
     chain,
     has_lanes,
@@ -46,13 +45,13 @@ def test_which_methods_have_lanes_is_told():
 
 
 @pytest.mark.every_value("name")
-@pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-12])
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-7, 1e-12])
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8, 9])
 @pytest.mark.parametrize("name", EFFECTS)
 def test_members_in_lanes_are_single_runs(name, n, rtol):
     lanes = lanes_of(n, name)
     scene = chain(n, name)
-    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 4.0)
+    q0, qd0 = starts(21, n, 2, np.pi), starts(21, n, 3, 9.0 if n == 2 else 4.0)
     q0[5], qd0[5] = 0.0, 0.0
     for method in [*lanes, *(f"{method}-radau5" for method in lanes), "auto"]:
         how = {"method": method, "rtol": rtol, "atol": rtol / 10}
@@ -62,26 +61,10 @@ def test_members_in_lanes_are_single_runs(name, n, rtol):
         assert_runs(scene, q0[:3], qd0[:3], (0.0, 1.0), **how, max_step=0.007)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 5])
-@pytest.mark.parametrize("name", SWITCHING)
-def test_members_of_scenes_that_switch_are_single_runs(name, n):
-    q0 = np.full((9, n), 0.4) if name == "a lock" else starts(9, n, 2, 0.5)
-    for method in ("dopri5", "dop853"):
-        assert_runs(chain(n, name), q0, 0.0, (0, 2), method=method)
-
-
 @pytest.mark.parametrize("n", [33, 100, 101])
 def test_members_of_long_chains_are_single_runs(n):
     ends = (0, 0.2 if n <= 100 else 0.05)
     found = assert_runs(long_chain(n), starts(11, n, 2, 0.5), 0.0, ends, method="taylor", rtol=1e-6)
-    assert found.success.all()
-
-
-@pytest.mark.parametrize("rtol", [1e-2, 1e-5, 1e-8, 1e-12])
-@pytest.mark.parametrize("method", METHODS)
-def test_fast_starts_over_the_whole_circle(method, rtol):
-    q0, qd0 = starts(41, 2, 2, np.pi), starts(41, 2, 3, 9.0)
-    found = assert_runs(BOOK, q0, qd0, (0, 3), method=method, rtol=rtol, atol=rtol / 10)
     assert found.success.all()
 
 
@@ -183,7 +166,7 @@ VARIED = {  # links, effects, methods, and the parameters that differ from lane 
 @pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", VARIED)
 def test_parameters_differ_from_lane_to_lane(name):
-    """A member with a wave of amplitude 0, or a drag of 0, has other equations, and runs alone."""
+    """A wave or a drag of 0 gives its member other equations: it runs alone."""
     n, effects, methods, names = VARIED[name]
     names = [*LINKS, *(each for each in names if each not in LINKS)]
     values = pc.sampling.uniform(0.5, 2.0, (21, len(names)), seed=6)

@@ -40,17 +40,6 @@ def replace(path):
     make(path, q0=STARTS + 0.1, time_limit=1e-9, on_failure="ignore")
 
 
-def block(path):
-    if (path / "extremes" / "c").exists():
-        (path / "extremes" / "c").rename(path / "c")
-    (path / "extremes" / "c").touch()
-
-
-def forbid(path):
-    for folder in [path, *(one for one in path.rglob("*") if one.is_dir())]:
-        folder.chmod(0o500)
-
-
 def once(done, path):
     """Return a report that does something to a store when a quarter is run."""
     left = [done]
@@ -62,11 +51,73 @@ def once(done, path):
     return report
 
 
-def assert_told(path, lost, kind=None, told=GONE, **how):
-    """Lose a store that is being written; return what has been done."""
-    with pool_of(kind) as pool, pytest.raises(OSError, match=told) as error:
-        make(path, progress=once(lost, path), executor=pool, **how)
-    return error.value.ensemble
+def interrupt(path):
+    raise KeyboardInterrupt
+
+
+def block(path):
+    if (path / "extremes" / "c").exists():
+        (path / "extremes" / "c").rename(path / "c")
+    (path / "extremes" / "c").touch()
+
+
+def unblock(path):
+    (path / "extremes" / "c").unlink()
+    if (path / "c").exists():
+        (path / "c").rename(path / "extremes" / "c")
+
+
+def folders(path):
+    return [path, *(one for one in path.rglob("*") if one.is_dir())]
+
+
+def forbid(path):
+    for folder in folders(path):
+        folder.chmod(0o500)
+
+
+def allow(path):
+    for folder in reversed(folders(path)):
+        folder.chmod(0o700)
+
+
+def remove_a_chunk(name):
+    told = rf"files of 7 of 54 members are gone, the first of them is {name}/c/[0-9/]+: some"
+    return lambda path: chunks(path, name)[0].unlink(), OSError, told, lambda path: None
+
+
+GOES_ON = r"the same call goes on with it: '.*a\.zarr'"
+root_may = pytest.mark.skipif(os.geteuid() == 0, reason="root may")
+ENDS = {  # what happens, what is told, and how it is mended
+    "interrupted": (interrupt, KeyboardInterrupt, None, lambda path: None),
+    "moved": (move, OSError, GONE, lambda path: path.with_name("elsewhere.zarr").rename(path)),
+    "no status": remove_a_chunk("status"),
+    "no time": remove_a_chunk("t_reached"),
+    "no event": remove_a_chunk("over"),
+    "blocked": (block, OSError, GOES_ON, unblock),
+    "forbidden": (forbid, OSError, GOES_ON, allow),
+}
+
+
+@pytest.mark.unsanitized
+@pytest.mark.every_value("end")
+@pytest.mark.parametrize("kind", [None, "threads", "processes"])
+@pytest.mark.parametrize(
+    "end", [pytest.param(end, marks=root_may if end == "forbidden" else ()) for end in ENDS]
+)
+def test_whatever_ends_a_run_the_same_call_goes_on_to_the_same_bytes(tmp_path, stored, end, kind):
+    path, (happens, error, told, mend) = tmp_path / "a.zarr", ENDS[end]
+    with pool_of(kind) as pool, pytest.raises(error, match=told) as raised:
+        make(path, progress=once(happens, path), executor=pool)
+    mend(path)
+    assert len(chunks(path, "status")) >= 2  # what was done is not lost
+    if "no" not in end.split():
+        assert 0 < raised.value.ensemble.counts()["not_run"] < 54
+    missing = "of 54 members were not run, or files of theirs are missing, the"
+    with pytest.warns(pc.PendcoreWarning, match=missing):
+        assert pc.load(path).ending == "interrupted"
+    assert "not_run" not in make(path).counts()
+    assert contents(path) == contents(stored)
 
 
 @pytest.mark.unsanitized
@@ -75,21 +126,18 @@ def assert_told(path, lost, kind=None, told=GONE, **how):
 def test_a_store_that_goes_while_it_is_written_is_told_and_made_by_nobody(tmp_path, lost, kind):
     path = tmp_path / "folder" / "a.zarr"
     path.parent.mkdir()
-    assert_told(path, lost, kind, told=GONE + ": it w", on_failure="ignore")
+    with pool_of(kind) as pool, pytest.raises(OSError, match=GONE + ": it w"):
+        make(path, progress=once(lost, path), executor=pool)
     if lost not in (remove, empty):  # which take their time, in which a worker may write on
         assert not path.exists()
 
 
-@pytest.mark.unsanitized
-@pytest.mark.parametrize("kind", [None, "processes"])
-def test_a_store_that_is_put_back_loses_nothing(tmp_path, stored, kind):
-    path, moved = tmp_path / "a.zarr", tmp_path / "elsewhere.zarr"
-    left = assert_told(path, move, kind)
-    assert len(chunks(moved, "status")) >= 2
-    moved.rename(path)
-    assert left.counts()["not_run"] < 54
-    make(path)
-    assert contents(path) == contents(stored)
+def test_nothing_is_written_into_a_store_that_took_the_place(tmp_path):
+    path = tmp_path / "a.zarr"
+    with pytest.raises(OSError, match=GONE):
+        make(path, progress=once(replace, path))
+    with pytest.warns(pc.PendcoreWarning, match="54 of 54 members were not run"):
+        assert pc.load(path).counts() == {"not_run": 54}
 
 
 @pytest.mark.unsanitized
@@ -101,12 +149,6 @@ def test_a_store_that_goes_while_a_cluster_writes_it_is_told(tmp_path, cluster):
     while path.exists() and monotonic() < until:
         sleep(0.01)
     assert not path.exists()
-
-
-def test_nothing_is_written_into_a_store_that_took_the_place(tmp_path):
-    assert_told(tmp_path / "a.zarr", replace)
-    with pytest.warns(pc.PendcoreWarning, match="54 of 54 members were not run"):
-        assert pc.load(tmp_path / "a.zarr").counts() == {"not_run": 54}
 
 
 def test_what_was_written_beside_a_store_that_has_just_gone_is_taken_back(tmp_path, monkeypatch):
@@ -130,19 +172,6 @@ def test_another_current_folder_changes_nothing(tmp_path, stored, monkeypatch):
     make("a.zarr", progress=once(os.chdir, tmp_path / "other"))
     assert contents(tmp_path / "a.zarr") == contents(stored)
     assert not [*(tmp_path / "other").iterdir()]
-
-
-@pytest.mark.unsanitized
-@pytest.mark.parametrize("kind", [None, "threads", "processes"])
-@pytest.mark.parametrize("name", ["status", "t_reached", "over"])
-def test_a_file_that_goes_while_a_store_is_written_is_told_and_made_anew(
-    tmp_path, stored, name, kind
-):
-    path = tmp_path / "a.zarr"
-    told = rf"files of 7 of 54 members are gone, the first of them is {name}/c/[0-9/]+: some"
-    assert_told(path, lambda path: chunks(path, name)[0].unlink(), kind, told=told)
-    make(path)
-    assert contents(path) == contents(stored)
 
 
 @pytest.mark.parametrize("name", ["status", "q", "extremes"])
@@ -180,14 +209,3 @@ def test_a_chunk_of_nothing_but_nan_is_written_as_well(tmp_path):
     found = pc.ensemble(BOOK, q0=STARTS, **how)
     assert np.isnan(found["first_event"]).all()
     assert np.isnan(pc.load(tmp_path / "a.zarr")["first_event"]).all()  # and load warns of nothing
-
-
-root_may = pytest.mark.skipif(os.geteuid() == 0, reason="root may")
-
-
-@pytest.mark.parametrize("kind", [None, "threads"])
-@pytest.mark.parametrize("lost", [block, pytest.param(forbid, marks=root_may)])
-def test_a_store_that_cannot_be_written_any_more_is_told(tmp_path, lost, kind):
-    told = r"the same call goes on with it: '.*a\.zarr'"
-    left = assert_told(tmp_path / "a.zarr", lost, kind, told=told)
-    assert 0 < left.counts()["not_run"] < 54

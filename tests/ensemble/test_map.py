@@ -50,40 +50,39 @@ def test_zoom_refine_and_other_numbers(tmp_path, capsys):
             assert np.isfinite(found["values"]).all()
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "told"),
-    [
-        ("[map]", "[maps]", "unknown key 'maps': did you mean 'map'?"),
-        ('show = "first_event"', 'show = "second"', "show = 'second': must be one of first_event"),
-        ('show = "first_event"', 'show = "q[3]"', "show = 'q[3]': the scene has 2 links"),
-        ('show = "first_event"\n', "", "[map] needs show"),
-        ('"q0_deg[2]"', '"q0_deg[3]"', "q0_deg[3]: the scene has 2 links"),
-        ('"q0_deg[2]"', '"gravityy"', "gravity"),
-        ('"q0_deg[2]"', '"q0[1]"', "y.name = 'q0[1]': is that of x too: name another one"),
-        ("count = 200}", "count = 1}", "x.count = 1: must be a whole number from 2"),
-        ("stop = 270, ", "", "x: must be a table with name, start, stop, count"),
-        ("start = -90", "start = 300", "start = 300, stop = 270: must be increasing"),
-    ],
-)
-def test_mistakes_are_told_in_a_line(tmp_path, capsys, old, new, told):
+SHOW = 'show = "first_event"'
+CHANGED = [
+    ("[map]", "[maps]", "unknown key 'maps': did you mean 'map'?"),
+    (SHOW, 'show = "second"', "show = 'second': must be one of first_event"),
+    (SHOW, 'show = "q[3]"', "show = 'q[3]': the scene has 2 links"),
+    (f"{SHOW}\n", "", "[map] needs show"),
+    ('"q0_deg[2]"', '"q0_deg[3]"', "q0_deg[3]: the scene has 2 links"),
+    ('"q0_deg[2]"', '"gravityy"', "gravity"),
+    ('"q0_deg[2]"', '"q0[1]"', "y.name = 'q0[1]': is that of x too: name another one"),
+    ("count = 200}", "count = 1}", "x.count = 1: must be a whole number from 2"),
+    ("stop = 270, ", "", "x: must be a table with name, start, stop, count"),
+    ("start = -90", "start = 300", "start = 300, stop = 270: must be increasing"),
+]
+ARGUMENTS = [
+    (["--count", "1"], "--count = 1: must be 2 or more"),
+    (["--zoom", "1", "0", "0", "1"], "X0 < X1 and Y0 < Y1 are needed"),
+    (["--refine", "-1"], "--refine = -1: must be 0 or more"),
+    (["--refine", "4"], "count = 200: must be a multiple of 16"),
+]
+
+
+def test_mistakes_are_told_in_a_line(tmp_path, capsys):
     case = tmp_path / "case.toml"
-    case.write_text(CASE.read_text().replace(old, new).replace("t_end = 30.0", "t_end = 0.1"))
-    assert run(tmp_path / "out", "--count", "4", case=case) == 2
-    error = capsys.readouterr().err
-    assert told in error
-    assert error.count("\n") == 1
-    assert not (tmp_path / "out").exists()
-
-
-def test_wrong_arguments(tmp_path, capsys):
-    for arguments, told in [
-        (["--count", "1"], "--count = 1: must be 2 or more"),
-        (["--zoom", "1", "0", "0", "1"], "X0 < X1 and Y0 < Y1 are needed"),
-        (["--refine", "-1"], "--refine = -1: must be 0 or more"),
-        (["--refine", "4"], "count = 200: must be a multiple of 16"),
-    ]:
+    for old, new, told in CHANGED:
+        case.write_text(CASE.read_text().replace(old, new).replace("t_end = 30.0", "t_end = 0.1"))
+        assert run(tmp_path / "out", "--count", "4", case=case) == 2
+        error = capsys.readouterr().err
+        assert told in error
+        assert error.count("\n") == 1
+    for arguments, told in ARGUMENTS:
         assert run(tmp_path / "out", *arguments) == 2
         assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_map(tmp_path, capsys, monkeypatch):

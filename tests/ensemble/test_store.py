@@ -94,21 +94,6 @@ def test_xarray_reads_it_with_units_and_coordinates(stored, plain):
 
 
 @pytest.mark.unsanitized
-@pytest.mark.parametrize("kind", [None, "threads", "processes"])
-def test_an_interrupted_store_ends_as_the_same_bytes(tmp_path, stored, kind):
-    path = tmp_path / "plain.zarr"
-    with pool_of(kind) as pool, pytest.raises(KeyboardInterrupt) as stop:
-        make(path, progress=stop_early, executor=pool)
-    done = stop.value.ensemble.counts()
-    assert 0 < done.get("not_run", 0) < 54
-    missing = f"{done['not_run']} of 54 members were not run, or files of theirs are missing, the"
-    with pytest.warns(pc.PendcoreWarning, match=missing):
-        assert pc.load(path).ending == "interrupted"
-    assert "not_run" not in make(path).counts()
-    assert contents(path) == contents(stored)
-
-
-@pytest.mark.unsanitized
 def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     whole, killed = tmp_path / "whole.zarr", tmp_path / "killed.zarr"
     pc.ensemble(BOOK, q0=STARTS, store=whole, **LONG)

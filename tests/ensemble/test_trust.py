@@ -6,12 +6,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
+from members_and_runs import BOOK, starts
 from pendcore._ensemble.trust import second
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cli.map.refinement import refined
+from stored_ensembles import OVER
 
-BOOK = pc.Scene.textbook()
-UPRIGHT = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
+FIRST = {"keep": pc.reducers.FirstEvent(OVER)}
 
 
 def plane(count, span=np.pi):
@@ -21,18 +22,17 @@ def plane(count, span=np.pi):
 
 
 def test_a_chaotic_motion_is_resolved_as_long_as_doubles_know_it():
-    starts = [[1.5, 1.5], [0.0, 0.0]]  # regular, chaotic
-    short = pc.ensemble(BOOK, q0=starts, t_span=(0, 10))
-    long = pc.ensemble(BOOK, q0=starts, t_span=(0, 100))
-    assert short.resolved().tolist() == [True, True]
-    assert long.resolved().tolist() == [True, False]
-    until = pc.simulate(BOOK, q0=starts[1], t_span=(0, 100)).valid_until()
-    assert 10 < until < 100
+    asked = {"q0": [[1.5, 1.5], [0.0, 0.0]]}  # regular, chaotic
+    assert pc.ensemble(BOOK, **asked, t_span=(0, 10)).resolved().tolist() == [True, True]
+    assert pc.ensemble(BOOK, **asked, t_span=(0, 100)).resolved().tolist() == [True, False]
+    assert 10 < pc.simulate(BOOK, q0=[0.0, 0.0], t_span=(0, 100)).valid_until() < 100
 
 
 def test_a_coarse_run_is_not_resolved_at_its_own_fault():
-    coarse = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 20), rtol=1e-3, atol=1e-3)
-    fine = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 20), rtol=1e-12, atol=1e-12)
+    coarse, fine = (
+        pc.ensemble(BOOK, q0=plane(4), t_span=(0, 20), rtol=tolerance, atol=tolerance)
+        for tolerance in (1e-3, 1e-12)
+    )
     told = coarse.resolved()
     wrong = np.abs(coarse.q - fine.q).max(axis=-1) > 0.2
     assert wrong.any()
@@ -55,7 +55,7 @@ def test_the_second_ensemble_has_another_method_and_other_bits():
 
 
 def test_the_second_ensemble_keeps_series_that_find_events():
-    found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), keep=pc.reducers.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), **FIRST)
     _, request = second(found.members, found.request)
     assert request.options["method"] == pc.simulate(BOOK, q0=plane(2)[0, 0], t_span=(0, 1)).method
     assert request.options["rtol"] == pytest.approx(0.01 * found.request.options["rtol"])
@@ -65,11 +65,10 @@ def test_the_second_ensemble_keeps_series_that_find_events():
 
 
 def test_events_are_compared_by_their_times():
-    found = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 10), keep=pc.reducers.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=plane(4), t_span=(0, 10), **FIRST)
     other = found.second()
-    times = found["first_event"], other["first_event"]
     assert found.resolved(other).all()
-    assert np.nanmax(np.abs(times[0] - times[1])) > 0
+    assert np.nanmax(np.abs(found["first_event"] - other["first_event"])) > 0
     assert not found.resolved(other, within=0.0).all()
     assert found.resolved(other, name="q").all()
     with pytest.raises(ValueError, match=r"name = 'p': must be one of 'first_event', 'q', 'qd'"):
@@ -79,10 +78,10 @@ def test_events_are_compared_by_their_times():
 def test_energy_forbids_what_does_not_happen():
     q0 = plane(20)
     theta = q0 - np.pi / 2
-    forbidden = is_forbidden(BOOK, q0, 0.0, UPRIGHT)
+    forbidden = is_forbidden(BOOK, q0, 0.0, OVER)
     heyl = 3 * np.cos(theta[..., 0]) + np.cos(theta[..., 1]) > 2  # Heyl (2008)
     assert np.array_equal(forbidden, heyl)
-    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), keep=pc.reducers.FirstEvent(UPRIGHT))
+    found = pc.ensemble(BOOK, q0=q0, t_span=(0, 15), **FIRST)
     assert np.isnan(found["first_event"][forbidden]).all()
     assert np.isfinite(found["first_event"]).mean() > 0.5
 
@@ -93,20 +92,18 @@ def test_energy_forbids_what_does_not_happen():
 def test_nothing_that_happens_is_called_forbidden(link, value):
     links = [pc.Link(mass=0.7, length=0.4, center=-0.1), *BOOK.links]
     scene = pc.Scene(links=links, gravity=5.0)
-    event = pc.events.LinkAngle(link, value, every_turn=True, terminal=True)
-    q0 = pc.sampling.uniform(-3, 3, (60, 3), seed=link)
-    qd0 = pc.sampling.uniform(-2, 2, (60, 3), seed=link + 9)
+    event = OVER.replace(link=link, value=value)
+    q0, qd0 = starts(60, 3, link, 3.0), starts(60, 3, link + 9, 2.0)
     forbidden = is_forbidden(scene, q0, qd0, event)
-    found = pc.ensemble(scene, q0=q0, qd0=qd0, t_span=(0, 10), keep=pc.reducers.FirstEvent(event))
+    found = pc.ensemble(scene, (0, 10), q0, qd0, keep=pc.reducers.FirstEvent(event))
     assert not np.isfinite(found["first_event"][forbidden]).any()
 
 
-def test_nothing_is_known_of_scenes_with_effects():
-    scene = BOOK.replace(effects=[pc.effects.Motor(joint=1, constant=30.0)])
-    q0 = plane(4)
-    assert not is_forbidden(scene, q0, 0.0, UPRIGHT).any()
+def test_nothing_is_known_of_scenes_with_effects_or_lines():
+    driven = BOOK.replace(effects=[pc.effects.Motor(joint=1, constant=30.0)])
     line = pc.events.TipLine(point=(0.0, -9.0), normal=(0.0, 1.0))
-    assert not is_forbidden(BOOK, q0, 0.0, line).any()
+    for scene, event in ((driven, OVER), (BOOK, line)):
+        assert not is_forbidden(scene, plane(4), 0.0, event).any()
 
 
 def test_a_map_is_refined_where_neighbours_differ():
@@ -127,24 +124,8 @@ def test_a_map_is_refined_where_neighbours_differ():
         list(refined((100, 104), 3, disc))
 
 
-def test_decreasing_starts_name_an_axis_too():
-    found = pc.ensemble(BOOK, q0=[[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1))
-    [line] = found.plot("q[1]")
-    assert line.axes.get_xlabel() == "q0[1] (rad)"
-    assert line.get_xdata().tolist() == [1.0, 0.5, 0.2]
-
-
-def test_what_cannot_be_drawn():
-    found = pc.ensemble(BOOK, q0=[[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
-    for name in (None, "q[1]"):
-        with pytest.raises(ValueError, match="keeps states at several times, which are not one"):
-            found.plot(name)
-    with pytest.raises(TypeError, match="name: is of type ndarray: must name what is"):
-        found.plot(found.q)
-
-
-def test_figures_name_their_axes_and_units():
-    found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), keep=pc.reducers.FirstEvent(UPRIGHT))
+def test_a_figure_of_two_axes_is_an_image_with_names_and_units():
+    found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), **FIRST)
     [image] = found.plot()
     assert image.axes.get_xlabel() == "q0[1] (rad)"
     assert image.axes.get_ylabel() == "q0[2] (rad)"
@@ -156,8 +137,12 @@ def test_figures_name_their_axes_and_units():
     assert image.colorbar.ax.get_ylabel() == "qd[2] at the end (rad/s)"
     assert np.array_equal(trust.get_array(), mask.T)
     assert trust.axes is not image.axes
+    plt.close("all")
 
-    swept = pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1), vary={"link[2].mass": [0.5, 1.0, 2.0]})
+
+def test_a_figure_of_one_axis_is_a_line():
+    how = {"q0": [0.5, 1.0], "t_span": (0, 1)}
+    swept = pc.ensemble(BOOK, **how, vary={"link[2].mass": [0.5, 1.0, 2.0]})
     [line] = swept.plot("q[2]")
     assert line.axes.get_xlabel() == "link[2].mass (kg)"
     assert np.array_equal(line.get_ydata(), swept.q[:, 1])
@@ -165,10 +150,21 @@ def test_figures_name_their_axes_and_units():
     line, marks = swept.plot("q[2]", own, resolved=[True, False, True], color="k")
     assert line.axes is own
     assert marks.get_xdata().tolist() == [1.0]
-    with pytest.raises(ValueError, match=r"name = 'q\[3\]': must be one of q\[1\], q\[2\]"):
-        swept.plot("q[3]")
-    with pytest.raises(ValueError, match=r"resolved: shape \(2,\): must be \(3,\)"):
-        swept.plot(resolved=[True, False])
-    with pytest.raises(ValueError, match="a figure needs one axis or two"):
-        pc.ensemble(BOOK, q0=[0.5, 1.0], t_span=(0, 1)).plot()
+    [line] = pc.ensemble(BOOK, q0=[[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1)).plot(
+        "q[1]"
+    )
+    assert line.axes.get_xlabel() == "q0[1] (rad)"
+    assert line.get_xdata().tolist() == [1.0, 0.5, 0.2]  # decreasing starts name an axis too
+    times = pc.ensemble(BOOK, q0=[[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
+    several = "keeps states at several times, which are not one"
+    for found, name, options, error, told in (
+        (swept, "q[3]", {}, ValueError, r"name = 'q\[3\]': must be one of q\[1\], q\[2\]"),
+        (swept, None, {"resolved": [True, False]}, ValueError, r"resolved: shape \(2,\): must be "),
+        (pc.ensemble(BOOK, **how), None, {}, ValueError, "a figure needs one axis or two"),
+        (times, None, {}, ValueError, several),
+        (times, "q[1]", {}, ValueError, several),
+        (times, times.q, {}, TypeError, "name: is of type ndarray: must name what is"),
+    ):
+        with pytest.raises(error, match=told):
+            found.plot(name, **options)
     plt.close("all")
