@@ -69,38 +69,6 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
   CHECK(found[2].direction == -1);
 }
 
-TEST_CASE("a jump into zero is an event, and a jump from zero is not") {
-  Turning turning;
-  const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
-  std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {}, 0.0);
-  finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-  CHECK(found.empty());
-  const double moves[] = {1.0, 1.0};
-  const double rests[] = {1.0, 0.0};
-  finder.jump(1.0, moves, rests);
-  REQUIRE(found.size() == 1);
-  finder.jump(1.0, rests, moves);
-  CHECK(found.size() == 1);
-}
-
-TEST_CASE("a jump may end the run, once") {
-  Turning turning;
-  const std::vector<Event> events = {
-      {.function = events::RateZero{.joint = 1, .link = {}}, .terminal = 1}};
-  const double before[] = {1.0, 1.0};
-  const double after[] = {1.0, -1.0};
-  for (const long long passed : {0, 1}) {
-    std::vector<FoundEvent> found;
-    EventFinder finder(turning.scene, events, found, {passed}, 0.0);
-    CHECK(finder.may_end());
-    finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-    finder.jump(1.0, before, after);
-    CHECK(finder.ended_by() == (passed == 0 ? 0 : -1));
-    CHECK(found.size() == 1);
-  }
-}
-
 TEST_CASE("after a jump a step begins with the value that the jump left") {
   Turning turning;
   int calls = 0;
