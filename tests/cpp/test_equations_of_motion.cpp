@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include "arithmetic/dual.hpp"
 #include "dynamics/closed_form/double_pendulum.hpp"
 #include "dynamics/closed_form/double_pendulum_with_effects.hpp"
 #include "dynamics/closed_form/single_pendulum.hpp"
@@ -96,35 +95,6 @@ TEST_CASE("trajectories in a pack have the same bits as each alone") {
   }
 }
 
-TEST_CASE("a dual number has the same bits in its value, and the derivative beside it") {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution any(0.1, 3.0);
-  auto check = [&](auto f) {
-    const Pair x{any(random), any(random)};
-    const Pair along{any(random), -any(random)};
-    const double h = 1e-6;
-    const Dual<Pair> found = f(Dual<Pair>(x, along));
-    const Pair ahead = f(Pair(x + h * along));
-    const Pair behind = f(Pair(x - h * along));
-    for (int i = 0; i < 2; ++i) {
-      CHECK(found.value[i] == f(x)[i]);
-      CHECK(found.slope[i] == doctest::Approx((ahead[i] - behind[i]) / (2 * h)).epsilon(1e-7));
-    }
-  };
-  for (int round = 0; round < 20; ++round) {
-    check([](const auto& x) { return exponential(-(x * x)); });
-    check([](const auto& x) { return power(x, 1.0) + power(x, 2.0) - power(x, 2.7); });
-    check([](const auto& x) { return absolute(-x) * x - absolute(x); });
-    check([](const auto& x) { return 1.0 / (x * x); });
-    check([](const auto& x) { return fma(x, other(x), before(x) * after(x)); });
-    check([]<class V>(const V& x) {
-      V s, c;
-      sine_cosine(x, s, c);
-      return V(s * (c * c));
-    });
-  }
-}
-
 TEST_CASE("three states at once have the bits of each state alone" *
           doctest::skip(!has_special_kernels_of_rare_runs)) {
   Random any(9, 4.0);
@@ -146,9 +116,11 @@ TEST_CASE("three states at once have the bits of each state alone" *
   }
 }
 
-TEST_CASE("the Jacobian has the bits of each direction alone") {
+TEST_CASE("the Jacobian has the bits of each direction alone, beside those of the rates") {
   Random any(10, 4.0);
   for (const Scene& scene : of_two_links) {
+    const EquationsOfMotion equations = equations_of_motion(scene);
+    const RightHandSide rates = right_hand_side(equations);
     const Jacobian jacobian(scene, equations_of_motion(scene));
     for (int round = 0; round < 100; ++round) {
       double y[4];
@@ -156,12 +128,15 @@ TEST_CASE("the Jacobian has the bits of each direction alone") {
       const double t = any();
       Matrix by_q(2, 2), by_qd(2, 2);
       jacobian(t, y, y + 2, by_q, by_qd);
+      double plain[2];
+      rates(t, y, y + 2, plain);
       for (int j = 0; j < 4; ++j) {
         double direction[4] = {};
         direction[j] = 1.0;
         double qdd[2], change[2];
         jacobian.along(t, y, y + 2, direction, direction + 2, qdd, change);
         for (int i = 0; i < 2; ++i) {
+          REQUIRE(are_same(qdd[i], plain[i]));
           REQUIRE(are_same(j < 2 ? by_q(i, j) : by_qd(i, j - 2), change[i]));
         }
       }
