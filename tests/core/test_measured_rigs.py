@@ -16,10 +16,11 @@ from reference.start_fit import Array, Fit, fit_start
 MEASURED = Path(__file__).parents[2] / "examples/measured"
 BOUND = 0.025  # rad, with the start fitted
 # Largest difference of angles over the whole swing that is promised, rad.
-GENTLE = {"double_validation_1": 0.03, "double_validation_2": 0.03}
-FROM_ROW_0 = {**GENTLE, "triple_identification_1": 0.015}
+FROM_ROW_0 = {
+    "double_validation_1": 0.03, "double_validation_2": 0.03, "triple_identification_1": 0.015,
+}  # fmt: skip
 FITTED = {"double_identification_1": BOUND, "double_identification_2": BOUND}
-NOISE = np.array([0.006, 0.006, 0.06, 0.06])  # in a row 0, rad, rad/s; shown by the last two tests
+NOISE = np.array([0.006, 0.006, 0.06, 0.06])  # in a row 0, rad, rad/s
 
 
 class Swing(NamedTuple):
@@ -47,9 +48,9 @@ class Swing(NamedTuple):
         """Return the largest difference of angles from the measured ones."""
         return float(np.abs(self.angles(start, scene) - self.q).max())
 
-    def fitted(self, scene: pc.Scene | None = None, noise: Array = NOISE) -> Fit:
+    def fitted(self, scene: pc.Scene | None = None) -> Fit:
         return fit_start(lambda start: self.angles(start, scene), self.q, self.row_0(),
-                         noise=noise, bound=BOUND)  # fmt: skip
+                         noise=NOISE, bound=BOUND)  # fmt: skip
 
     def changed(self, gravity: float = 1, damping: float = 1) -> pc.Scene:
         """The scene with its gravity and its dampings times a factor each."""
@@ -89,9 +90,7 @@ def test_a_case_stays_within_its_bound_over_the_whole_swing_from_row_0_or_near(n
         ("double_identification_2", 1, 0.03538),
     ],
 )
-def test_the_difference_from_row_0_is_what_another_solver_found(
-    name: str, damping: float, found: float
-) -> None:
+def test_the_difference_from_row_0_is_what_another_solver_found(name, damping, found) -> None:
     """That solver was written apart from this project, in SciPy; the dampings are times a factor.
 
     The gentle swings stay within their bounds with any of the three, the triple one does not.
@@ -117,30 +116,7 @@ def test_the_start_of_a_case_is_the_fitted_one(name: str) -> None:
     ids=["undamped", "damped twice", "damping of the wrong sign", "g - 1 %", "g + 1 %"],
 )
 @pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")  # negative damping warns
-def test_no_start_within_the_noise_saves_a_wrong_model(
-    name: str, gravity: float, damping: float
-) -> None:
+def test_no_start_within_the_noise_saves_a_wrong_model(name, gravity, damping) -> None:
     measured = swing(name)
     fit = measured.fitted(measured.changed(gravity, damping))
     assert max(fit.correction, fit.difference) > 1.2
-
-
-def test_five_sixths_of_the_noise_are_too_little_for_one_of_the_swings() -> None:
-    fit = swing("double_identification_1").fitted(noise=5 / 6 * NOISE)
-    assert max(fit.correction, fit.difference) > 1.03
-
-
-@pytest.mark.parametrize("name", GENTLE)
-def test_angles_are_known_to_some_mrad_only(name: str) -> None:
-    """From the best of starts, the gentlest swings still differ by about the noise of an angle."""
-    fit = swing(name).fitted(noise=100 * NOISE)
-    assert 0.75 * NOISE[0] < fit.difference * BOUND < NOISE[0]
-
-
-@pytest.mark.parametrize("name", FITTED)
-def test_rates_are_known_to_some_hundredths_of_rad_per_second_only(name: str) -> None:
-    """Measured rates and the difference quotients of measured angles disagree by that much."""
-    t, q, qd = swing(name)[1:]
-    quotients = (q[2:] - q[:-2]) / (t[2:] - t[:-2])[:, None]
-    disagreement = np.sqrt(np.mean((quotients - qd[1:-1]) ** 2, axis=0))
-    assert (disagreement > 0.75 * NOISE[2:]).all()

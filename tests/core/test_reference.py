@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from reference import chain, dormand_prince
 from reference.arithmetic import Number, multiple_precision
 from reference.conserved import angular_momentum, energy, mass_centers
 from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
-from reference.order_conditions import StageWeights, misses, order_of, trees
+from reference.order_conditions import order_of, trees
 from reference.trajectories import Trajectory, names, trajectory
 
 pytestmark = pytest.mark.unsanitized
@@ -85,41 +84,6 @@ def test_the_tableau_has_order_five_and_four() -> None:
     assert order_of(dormand_prince.A, dormand_prince.B) == 5
     assert order_of(dormand_prince.A, dormand_prince.B_FOURTH_ORDER) == 4
     assert [sum(row) for row in dormand_prince.A] == dormand_prince.C
-
-
-def weights_within_the_step(theta: Fraction) -> list[Fraction]:
-    """Return the weights of the stages in the continuous extension at ``theta``."""
-    weights = []
-    for i, (b, d) in enumerate(zip(dormand_prince.B, dormand_prince.D, strict=True)):
-        start_bend = (i == 0) - b
-        end_bend = b - (i == 6) - start_bend
-        inner = start_bend + theta * (end_bend + (1 - theta) * d)
-        weights.append(theta * (b + (1 - theta) * inner))
-    return weights
-
-
-@pytest.mark.parametrize("nodes", [1, 2, 3, 4])
-def test_the_continuous_extension_has_order_four(nodes: int) -> None:
-    weights = StageWeights(dormand_prince.A)
-    # Both sides of a condition are polynomials of degree at most 5: equal if equal at 6 places.
-    for theta in (Fraction(k, 7) for k in range(1, 7)):
-        for tree in trees(nodes):
-            assert misses(weights, weights_within_the_step(theta), tree, theta) == 0
-
-
-def test_the_continuous_extension_is_what_the_integrator_evaluates() -> None:
-    stages: list[float] = []
-
-    def f(t: float, y: dormand_prince.Array) -> list[float]:
-        stages.append(float(np.cos(3 * t) - y[0] ** 2))
-        return stages[-1:]
-
-    run = dormand_prince.integrate(f, [0.3], (0.0, 0.5), rtol=1.0, atol=1.0, first_step=0.5)
-    assert run.accepted == 1
-    for theta in (Fraction(1, 5), Fraction(2, 3), Fraction(1)):
-        weights = [float(w) for w in weights_within_the_step(theta)]
-        expected = 0.3 + 0.5 * np.dot(weights, stages)
-        assert run(0.5 * float(theta))[0] == pytest.approx(expected, rel=1e-14)
 
 
 # The largest error of an angle at rtol = atol = 1e-10: how sensitive each motion is.

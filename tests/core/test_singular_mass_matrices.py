@@ -132,9 +132,7 @@ def scenes(draw: st.DrawFn) -> tuple[list[pc.Link], list[Any]]:
 @pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 @settings(max_examples=60, deadline=None)
 @given(scenes())
-def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(
-    drawn: tuple[list[pc.Link], list[Any]],
-) -> None:
+def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(drawn) -> None:
     links, effects = drawn
     refused = ""
     try:

@@ -79,15 +79,6 @@ def test_other_units_change_no_bit_of_impacts_and_contact(method: str, run: Draw
 
 
 @every_method
-@given(run=motions(()))
-def test_four_times_the_gravity_is_half_the_time(method: str, run: Drawn) -> None:
-    run.options |= FIRST_STEP
-    fast = in_units(run, Units(s=0.5))
-    assert fast.scene == run.scene.replace(gravity=4 * run.scene.gravity)
-    same_steps(run, fast, method, s=0.5)
-
-
-@every_method
 @given(run=motions(MIRRORED))
 def test_upside_down_changes_no_bit(method: str, run: Drawn) -> None:
     same_steps(run, symmetries.upside_down(run), method, signs=-1.0)

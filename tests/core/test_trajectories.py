@@ -71,9 +71,7 @@ def test_the_textbooks_program_ends_where_octaves_ode45_does() -> None:
 @pytest.mark.parametrize(
     "name", ["textbook", "horizontal_rest", "unequal", "heavy_tip", "no_gravity", "single_rod"]
 )
-def test_steps_and_states_are_those_of_the_method_written_out_in_python(
-    name: str, direction: int, tolerance: float
-) -> None:
+def test_steps_and_states_are_those_of_the_method_written_out_in_python(name, direction, tolerance):
     case = trajectory(name)
     t_end = direction * min(5.0, float(case.t[-1]))
     sol, run = (simulate(case, t_end, tolerance) for simulate in (solve, written_out))
