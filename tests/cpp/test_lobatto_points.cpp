@@ -37,9 +37,11 @@ void check(const LobattoPoints& points, const LobattoPoints::Sums& sums, int pow
 
 }  // namespace
 
-TEST_CASE("over the whole interval powers up to twice the number of points less 3 are exact") {
+TEST_CASE("weights integrate powers exactly, as far as they should") {
   for (int count = 5; count <= 9; ++count) {
     const LobattoPoints& points = lobatto_points(count);
+    CHECK(points.theta[points.count - 1] == 1.0);
+    // Over the whole interval, powers up to twice the number of points less 3.
     const LobattoPoints::Sums& to_end = points.sums[points.count];
     const auto off_by = [&](int power) {
       return off(points, power, 1.0 / (power + 1), [&](auto j) { return to_end.once[j]; });
@@ -47,23 +49,12 @@ TEST_CASE("over the whole interval powers up to twice the number of points less 
     for (int power = 0; power <= 2 * count - 3; ++power) CHECK(off_by(power) < rounding);
     CHECK(off_by(2 * count - 2) > 1e-10);
     for (int power = 0; power < count; ++power) check(points, to_end, power);
-  }
-}
-
-TEST_CASE("up to a point, the points before it integrate squares, or what goes through them all") {
-  for (int count = 5; count <= 9; ++count) {
-    const LobattoPoints& points = lobatto_points(count);
-    CHECK(points.theta[points.count - 1] == 1.0);
+    // Up to a point, squares by the points before it, or what goes through them all.
     for (int i = 1; i < count; ++i) {
       for (int power = 0; power < std::min(i, 3); ++power) check(points, points.sums[i], power);
       for (int j = i; j < count; ++j) CHECK(points.sums[i].once[j] == 0.0);
     }
-  }
-}
-
-TEST_CASE("the polynomials are the double integrals within the interval") {
-  for (int count = 5; count <= 9; ++count) {
-    const LobattoPoints& points = lobatto_points(count);
+    // Within the interval, the polynomials are the double integrals.
     for (const double theta : {0.1, 0.4, 0.73, 1.0}) {
       const auto value = [&](std::size_t j) {
         double sum = 0.0;
