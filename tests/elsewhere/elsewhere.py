@@ -1,6 +1,6 @@
 """`make elsewhere`: the C++ tests and the hashes of trajectories on other processors.
 
-    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--contracted] [--page PAGE]
+    python tests/elsewhere/elsewhere.py aarch64 wasm32 [--page PAGE]
 
 Debian's cross compilers build the core and its C++ tests. QEMU runs them, or Node if they are
 compiled to WebAssembly; `clang` is this machine with another compiler. A machine passes if its C++
@@ -8,9 +8,7 @@ tests pass, its fma agrees with whole numbers in ten million cases, and all its 
 tests/cpp/trajectory_hash.txt. A machine whose compiler or emulator is missing fails; none is
 skipped, and test cases that are left out are named.
 
-With --contracted, a build in which the compiler may contract a * b + c is held against the same
-hashes, which must differ: so the comparison is seen to work. A page has the table of all machines.
-The exit status is 1 if anything is not as it must be.
+A page has the table of all machines. The exit status is 1 if anything is not as it must be.
 """
 
 from __future__ import annotations
@@ -36,8 +34,6 @@ FMA_CASES = 10_000_000
 PROCESSORS = {"aarch64": "ARM, 64 bits", "riscv64": "RISC-V, 64 bits", "s390x": "IBM Z, big-endian"}
 WEBASSEMBLY = "wasm32"
 CLANG = "clang"
-CONTRACTED = "aarch64"
-"""The machine on which contraction is tried; every one of its processors has the instruction."""
 COUNTS_ALLOCATIONS = "the number of allocations*"
 """What this test case counts is the same on every machine, and emulated it takes minutes."""
 CATCH = (
@@ -70,23 +66,19 @@ class Machine:
         found = f"{len(differing)} DIFFER: {', '.join(differing)}" if differing else "all equal"
         return "FAILED" if self.wrong else found
 
-    def build_and_run(self, contraction: str = "off") -> None:
-        """Build what runs there, and run it; with contraction, the hashes alone."""
+    def build_and_run(self) -> None:
         began = time.monotonic()
         try:
-            self._run(built(self.build, contraction), contraction == "off")
-        except (subprocess.CalledProcessError, OSError) as error:
-            self.wrong = f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
-        self.seconds = time.monotonic() - began
-
-    def _run(self, folder: Path, runs_all: bool) -> None:
-        self.hashes = hashes_in(called(*self.runner, folder / "trajectory_hash"))
-        if runs_all:
+            folder = built(self.build)
+            self.hashes = hashes_in(called(*self.runner, folder / "trajectory_hash"))
             called(*self.runner, folder / "check_fma", str(FMA_CASES))
             left_out = ",".join(name.replace(",", "\\,") for name in self.left_out)
             called(*self.runner, folder / "pendcore_tests", f"-tce={left_out}")
             if self.build != WEBASSEMBLY:  # which has no threads
                 called(*self.runner, folder / "pendcore_threads")
+        except (subprocess.CalledProcessError, OSError) as error:
+            self.wrong = f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
+        self.seconds = time.monotonic() - began
 
 
 def machines_of(build: str) -> list[Machine]:
@@ -109,21 +101,16 @@ def hashes_in(text: str) -> dict[str, str]:
 
 
 @cache
-def built(build: str, contraction: str) -> Path:
+def built(build: str) -> Path:
     """Build what runs there, and return the folder."""
-    folder = ROOT / "build/elsewhere" / (build if contraction == "off" else f"{build}-contracted")
-    targets = ["trajectory_hash"]
-    if contraction == "off":
-        targets += ["check_fma", "pendcore_tests"]
-        targets += ["pendcore_wasm"] if build == WEBASSEMBLY else ["pendcore_threads"]
+    folder = ROOT / "build/elsewhere" / build
+    targets = ["trajectory_hash", "check_fma", "pendcore_tests"]
+    targets += ["pendcore_wasm"] if build == WEBASSEMBLY else ["pendcore_threads"]
     compiler = ["-DCMAKE_CXX_COMPILER=clang++-22"]
     if build != CLANG:
         toolchain = TOOLCHAINS / ("wasm32.cmake" if build == WEBASSEMBLY else "debian.cmake")
         compiler = [f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", f"-DMACHINE={build}"]
-    called(
-        "cmake", "-G", "Ninja", "-B", folder, *compiler,
-        "-DPENDCORE_TESTS=ON", f"-DPENDCORE_CONTRACTION={contraction}",
-    )  # fmt: skip
+    called("cmake", "-G", "Ninja", "-B", folder, *compiler, "-DPENDCORE_TESTS=ON")
     called("cmake", "--build", folder, "--target", *targets)
     return folder / "tests/cpp"
 
@@ -149,7 +136,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("builds", nargs="+", choices=(*PROCESSORS, WEBASSEMBLY, CLANG))
     parser.add_argument("--page", type=Path, help="the page that has the table")
-    parser.add_argument("--contracted", action="store_true", help="try contraction as well")
     asked = parser.parse_args()
     if asked.page and set(asked.builds) != {*PROCESSORS, WEBASSEMBLY, CLANG}:
         parser.error("--page needs all machines: the table has a column for each")
@@ -162,16 +148,6 @@ def main() -> int:
         if one.wrong:
             print(one.wrong)
     fine = not any(one.wrong or one.differing() for one in machines)
-    if asked.contracted:
-        (machine,) = machines_of(CONTRACTED)
-        machine.build_and_run(contraction="fast")
-        is_seen = not machine.wrong and bool(machine.differing())
-        fine &= is_seen
-        print(
-            f"with contraction, {CONTRACTED}: {len(machine.differing())} of "
-            f"{len(machine.hashes)} hashes differ: {'as it must be' if is_seen else 'NOT SEEN'}"
-        )
-        print(machine.wrong)
     if asked.page and fine:
         before, _, rest = asked.page.read_text().partition(BEGIN)
         asked.page.write_text(before + BEGIN + table(machines) + END + rest.partition(END)[2])
