@@ -107,14 +107,11 @@ def test_a_ledger_counts_from_the_start_whatever_is_kept_and_goes_on_where_it_st
     assert late.viscous[0] > 0.01
     assert late.viscous[-1] == ledger.viscous[-1]
     assert np.abs(late.residual).max() < 1e-7
+    bare = pc.simulate(pc.Scene.textbook(), (0, 3), **START, ledger=True).energy().ledger
+    assert [*bare] == ["residual"]  # nothing does work
+    assert 0 < np.abs(bare.residual).max() < 1e-7
     part = pc.simulate(DAMPED, (0, 1), **START, ledger=True)
     assert are_same(part.resume(3.0).energy().ledger, ledger)
-
-
-def test_a_scene_that_does_no_work_has_nothing_but_the_residual():
-    run = pc.simulate(pc.Scene.textbook(), (0, 3), **START, ledger=True)
-    assert [*run.energy().ledger] == ["residual"]
-    assert 0 < np.abs(run.energy().ledger.residual).max() < 1e-7
 
 
 @pytest.mark.parametrize("value", [1, None, "yes", [True]], ids=repr)
@@ -135,13 +132,10 @@ def test_what_effects_change_is_no_drift_and_what_a_ledger_leaves_over_is(sol, l
     bare = repr(simulate())
     assert "drift not known (changed by viscous_joint and motor): run with ledger=True" in bare
     assert "too large" not in bare
-    assert "  effects  viscous_joint (2), motor, torsional_spring" in bare
-
-
-def test_a_ledger_calls_out_a_coarse_run():
     coarse = simulate(ledger=True, rtol=0.1, atol=0.1)
     assert energy_drift(coarse).too_large
     assert "too large to trust this run" in repr(coarse)
+    assert "  effects  viscous_joint (2), motor, torsional_spring" in bare
 
 
 def test_springs_are_part_of_what_the_energy_allows_and_one_that_pushes_has_no_bound():

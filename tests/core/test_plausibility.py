@@ -91,11 +91,8 @@ def test_an_implausible_run_is_warned_of_where_it_is_asked_for(case):
     described = pc.Case(scene=scene, **asked)
     with warned(message):
         described.simulate(on_failure="ignore")
-
-
-def test_a_warning_that_is_an_error_stops_the_run_before_it_begins():
-    with not_warned(), pytest.raises(pc.PendcoreWarning, match=r"^q0\[0\] = 45"):
-        pc.simulate(SCENE, q0=[45, 60], t_span=(0, 1e9))
+    with not_warned(), pytest.raises(pc.PendcoreWarning):  # an error stops it before it begins
+        pc.simulate(scene, **asked, max_step=1e-9)
 
 
 @pytest.mark.parametrize(
