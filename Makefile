@@ -106,10 +106,9 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
 MACHINES ?= aarch64 riscv64 s390x wasm32 clang
-CONTRACTED ?= --contracted
 elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/background/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
-	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
+	python tests/elsewhere/elsewhere.py $(MACHINES) $(PAGE:%=--page %)
 	$(if $(filter wasm32,$(MACHINES)),PENDCORE_TEST_JAVASCRIPT=1 $(PYTEST) --full tests/elsewhere)
 
 wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/how_to/webassembly.md

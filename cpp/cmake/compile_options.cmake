@@ -3,7 +3,7 @@
 # Same bits everywhere: what the source says is what the processor computes. No multiply and add is
 # contracted, nothing is reassociated, and no -march flag: newer instruction sets are chosen while
 # running. The last two flags change no value; they free sqrt of errno and let selects be blends.
-set(pendcore_arithmetic -ffp-contract=${PENDCORE_CONTRACTION} -fno-fast-math -fno-math-errno
+set(pendcore_arithmetic -ffp-contract=off -fno-fast-math -fno-math-errno
                         -fno-trapping-math)
 
 # GCC 12 moves a double through an MMX register where it runs out of others, and leaves it so: after
@@ -47,7 +47,7 @@ function(pendcore_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   # The headers are compiled by whoever includes them: there, too, nothing is contracted.
-  target_compile_options(${target} INTERFACE -ffp-contract=${PENDCORE_CONTRACTION})
+  target_compile_options(${target} INTERFACE -ffp-contract=off)
   if(PENDCORE_BASELINE_ONLY)
     target_compile_definitions(${target} PUBLIC PENDCORE_BASELINE_ONLY)
   endif()

@@ -7,35 +7,35 @@ small. It tries the same runs each time, because `make fuzz` looks further and s
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pendcore as pc
 import pytest
-from drawn_motions import any_runs, motions
+from drawn_motions import any_runs, motions, stopped_motions
 from fuzz.choices import FromHypothesis
 from fuzz.claims import ALWAYS, SOMETIMES, Claim
 from fuzz.drawn_run import Drawn
-from hypothesis import given, reject, settings
+from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
+from pendcore import _core
+
+METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
 
 pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
-
-
-def solution(run: Drawn) -> pc.Solution:
-    """Return the run's solution, or the one that an exception of the user's function brings."""
-    try:
-        return run.simulate()
-    except Exception as raised:
-        if not hasattr(raised, "solution"):
-            reject()
-        return raised.solution
 
 
 @pytest.mark.parametrize("claim", [*ALWAYS, *SOMETIMES], ids=lambda claim: claim.__name__)
 @settings(derandomize=True, max_examples=60)
 @given(run=any_runs(), data=st.data())
 def test_any_run_keeps_the_claims(claim: Claim, run: Drawn, data: st.DataObject) -> None:
-    sol = solution(run)
+    """A user's function may raise; the exception then brings the solution so far."""
+    try:
+        sol = run.simulate()
+    except Exception as raised:
+        if not hasattr(raised, "solution"):
+            reject()
+        sol = raised.solution
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.simplefilter("ignore", pc.PendcoreWarning)
@@ -65,3 +65,22 @@ def test_being_watched_changes_no_bit(run: Drawn, shares: list[float], ledger: b
     assert np.array_equal(sampled.t, times)
     assert np.array_equal(sampled.y, dense(times))
     assert np.array_equal(sampled._run.y_reached, plain.y[:, -1])
+
+
+def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
+    sol = run.simulate(**changes)
+    assert sol.success, sol.message
+    return sol(np.linspace(*run.t_span, 6))
+
+
+@settings(max_examples=150)
+@given(run=stopped_motions())
+def test_all_methods_agree_on_motions_with_stops(run: Drawn) -> None:
+    """The motions are regular: started 1e-8 aside, they stay near, as none grazing a stop does."""
+    wanted = at_five_times(run)
+    for beside in (1e-8, -1e-8):
+        moved = replace(run, qd0=[qd + beside for qd in run.qd0])
+        assume(np.abs(at_five_times(moved) - wanted).max() < 1e-6)
+    for method in METHODS:
+        found = at_five_times(run, method=method)
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-6, err_msg=method)

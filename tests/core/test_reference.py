@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 
 import numpy as np
 import pytest
 from reference import chain, dormand_prince
 from reference.arithmetic import Number, multiple_precision
 from reference.conserved import angular_momentum, energy, mass_centers
-from reference.newton_euler import Body, newton_euler, uniform_rod
-from reference.order_conditions import StageWeights, misses, order_of, trees
-from reference.trajectories import names, trajectory
+from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
+from reference.order_conditions import order_of, trees
+from reference.trajectories import Trajectory, names, trajectory
 
 pytestmark = pytest.mark.unsanitized
 
 BODIES = [
-    Body(1.3, 0.8, 0.5, 0.02),
-    Body(0.2, 1.7, 0.1, 0.3),
-    Body(4.0, 0.3, 0.3, 0.0),
-    uniform_rod(0.7, 1.1),
-]
+    Body(1.3, 0.8, 0.5, 0.02), Body(0.2, 1.7, 0.1, 0.3),
+    Body(4.0, 0.3, 0.3, 0.0), uniform_rod(0.7, 1.1),
+]  # fmt: skip
 Q, QD, COUPLES = [0.3, -2.1, 4.0, 1.2], [1.5, -3.0, 0.2, 6.0], [0.4, -0.7, 2.0, 0.1]
 GRAVITY = 9.81
 FIFTY = multiple_precision(50)
+ROOTED_TREES = [1, 1, 2, 4, 9, 20, 48, 115]  # of 1, 2, ... nodes
 
 
 def moved(s: Number) -> tuple[list[Number], list[Number]]:
@@ -43,25 +41,21 @@ def derivative(f: Callable[[Number], Number], order: int = 1) -> Number:
     return (f(s) - 2 * f(0 * s) + f(-s)) / s**2
 
 
-def test_mass_centre_accelerations_are_the_second_derivatives_of_the_positions() -> None:
-    motion = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
-    for i, acceleration in enumerate(motion.center_accelerations):
-        for axis in (0, 1):
-
-            def position(s: Number, i: int = i, axis: int = axis) -> Number:
-                return mass_centers(BODIES, *moved(s), FIFTY)[i][axis]
-
-            assert abs(acceleration[axis] - derivative(position, 2)) < 1e-18
+@pytest.fixture(scope="module")
+def motion() -> Motion:
+    return newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
 
 
-def test_the_mass_centres_move_as_newton_says() -> None:
-    motion = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
-    reactions = [*motion.reactions, (0, 0)]
-    for i, body in enumerate(BODIES):
-        for axis, weight in ((0, 0), (1, FIFTY.number(body.mass) * FIFTY.number(GRAVITY))):
-            force = reactions[i][axis] - reactions[i + 1][axis] + weight
-            inertial = FIFTY.number(body.mass) * motion.center_accelerations[i][axis]
-            assert abs(force - inertial) < 1e-40
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("i", range(len(BODIES)))
+def test_mass_centres_move_as_newton_says_and_as_their_positions_do(i, axis, motion) -> None:
+    acceleration = motion.center_accelerations[i][axis]
+    position = derivative(lambda s: mass_centers(BODIES, *moved(s), FIFTY)[i][axis], 2)
+    assert abs(acceleration - position) < 1e-18
+    mass, reactions = FIFTY.number(BODIES[i].mass), [*motion.reactions, (0, 0)]
+    weight = mass * FIFTY.number(GRAVITY) if axis == 1 else 0
+    force = reactions[i][axis] - reactions[i + 1][axis] + weight
+    assert abs(force - mass * acceleration) < 1e-40
 
 
 def test_the_energy_grows_by_the_power_of_the_couples() -> None:
@@ -77,63 +71,19 @@ def test_the_angular_momentum_grows_by_the_moments_about_the_pivot() -> None:
     assert float(rate) == pytest.approx(float(moment + COUPLES[0]), rel=1e-14)
 
 
-def test_doubles_and_fifty_digits_agree() -> None:
+def test_doubles_and_fifty_digits_agree(motion) -> None:
     double = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES)
-    exact = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
-    np.testing.assert_allclose(
-        double.accelerations, np.array(exact.accelerations, dtype=float), rtol=1e-12
-    )
-    np.testing.assert_allclose(double.reactions, np.array(exact.reactions, dtype=float), rtol=1e-11)
-
-
-def test_there_are_as_many_rooted_trees_as_known() -> None:
-    found = [trees(nodes) for nodes in range(1, 9)]
-    assert [len(set(some)) for some in found] == [1, 1, 2, 4, 9, 20, 48, 115]
-    assert [len(some) for some in found] == [1, 1, 2, 4, 9, 20, 48, 115]
+    for name, rtol in (("accelerations", 1e-12), ("reactions", 1e-11)):
+        exact = np.array(getattr(motion, name), dtype=float)
+        np.testing.assert_allclose(getattr(double, name), exact, rtol=rtol)
 
 
 def test_the_tableau_has_order_five_and_four() -> None:
+    found = [trees(nodes) for nodes in range(1, 9)]
+    assert [len(set(some)) for some in found] == [len(some) for some in found] == ROOTED_TREES
     assert order_of(dormand_prince.A, dormand_prince.B) == 5
     assert order_of(dormand_prince.A, dormand_prince.B_FOURTH_ORDER) == 4
-
-
-def test_the_nodes_are_the_row_sums() -> None:
     assert [sum(row) for row in dormand_prince.A] == dormand_prince.C
-
-
-def weights_within_the_step(theta: Fraction) -> list[Fraction]:
-    """Return the weights of the stages in the continuous extension at ``theta``."""
-    weights = []
-    for i, (b, d) in enumerate(zip(dormand_prince.B, dormand_prince.D, strict=True)):
-        start_bend = (i == 0) - b
-        end_bend = b - (i == 6) - start_bend
-        inner = start_bend + theta * (end_bend + (1 - theta) * d)
-        weights.append(theta * (b + (1 - theta) * inner))
-    return weights
-
-
-@pytest.mark.parametrize("nodes", [1, 2, 3, 4])
-def test_the_continuous_extension_has_order_four(nodes: int) -> None:
-    weights = StageWeights(dormand_prince.A)
-    # Both sides of a condition are polynomials of degree at most 5: equal if equal at 6 places.
-    for theta in (Fraction(k, 7) for k in range(1, 7)):
-        for tree in trees(nodes):
-            assert misses(weights, weights_within_the_step(theta), tree, theta) == 0
-
-
-def test_the_continuous_extension_is_what_the_integrator_evaluates() -> None:
-    stages: list[float] = []
-
-    def f(t: float, y: dormand_prince.Array) -> list[float]:
-        stages.append(float(np.cos(3 * t) - y[0] ** 2))
-        return stages[-1:]
-
-    run = dormand_prince.integrate(f, [0.3], (0.0, 0.5), rtol=1.0, atol=1.0, first_step=0.5)
-    assert run.accepted == 1
-    for theta in (Fraction(1, 5), Fraction(2, 3), Fraction(1)):
-        weights = [float(w) for w in weights_within_the_step(theta)]
-        expected = 0.3 + 0.5 * np.dot(weights, stages)
-        assert run(0.5 * float(theta))[0] == pytest.approx(expected, rel=1e-14)
 
 
 # The largest error of an angle at rtol = atol = 1e-10: how sensitive each motion is.
@@ -154,31 +104,22 @@ BOUNDS = {
 }
 
 
+def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince.Run:
+    how = {"rtol": tolerance, "atol": tolerance, "damping": case.damping}
+    return chain.simulate(case.bodies, case.gravity, case.q0, case.qd0, (0.0, t_end), **how)
+
+
 @pytest.mark.parametrize("name", names())
 def test_trajectories_follow_the_multiple_precision_ones(name: str) -> None:
     case = trajectory(name)
-    run = chain.simulate(
-        case.bodies,
-        case.gravity,
-        case.q0,
-        case.qd0,
-        (0.0, float(case.t[-1])),
-        rtol=1e-10,
-        atol=1e-10,
-        damping=case.damping,
-    )
-    n = len(case.q0)
-    error = max(np.abs(run(t)[:n] - q).max() for t, q in zip(case.t, case.q, strict=True))
-    assert error < BOUNDS[name]
+    run = simulate(case, float(case.t[-1]), 1e-10)
+    q = np.array([run(t)[: len(case.q0)] for t in case.t])
+    assert np.abs(q - case.q).max() < BOUNDS[name]
 
 
 def test_a_backward_run_mirrors_a_forward_one() -> None:
     case = trajectory("textbook")
-    span = float(case.t[-1])
-    runs = [
-        chain.simulate(case.bodies, 9.807, case.q0, case.qd0, (0.0, end), rtol=1e-8, atol=1e-8)
-        for end in (span, -span)
-    ]
-    np.testing.assert_array_equal(np.array(runs[0].t), -np.array(runs[1].t))
-    np.testing.assert_array_equal(np.array(runs[0].y)[:, :2], np.array(runs[1].y)[:, :2])
-    np.testing.assert_array_equal(runs[0](1.234)[:2], runs[1](-1.234)[:2])
+    there, back = (simulate(case, sign * float(case.t[-1]), 1e-8) for sign in (1, -1))
+    np.testing.assert_array_equal(np.array(there.t), -np.array(back.t))
+    np.testing.assert_array_equal(np.array(there.y)[:, :2], np.array(back.y)[:, :2])
+    np.testing.assert_array_equal(there(1.234)[:2], back(-1.234)[:2])

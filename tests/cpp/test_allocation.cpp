@@ -33,44 +33,45 @@ constexpr bool sanitized = true;
 constexpr bool sanitized = false;
 #endif
 
-long long count(const Scene& scene, Store store, double t_end, bool ledger, bool compensated) {
+/// How often a run asked for memory, and for how much.
+struct Asked {
+  long long times, bytes;
+};
+
+Asked asked_for(const Scene& scene, const Options& options, double t_end) {
   const std::size_t n = scene.links.size();
-  Options options;
+  const std::vector<double> q0(n, 0.7), qd0(n, 0.1);
+  const Asked before = {allocations, bytes};
+  const Solution solution = simulate(scene, q0, qd0, 0.0, t_end, options);
+  CHECK(solution.statistics.accepted > 5);
+  CHECK(solution.statistics.njev == 0);
+  CHECK(solution.found.empty());
+  return {allocations - before.times, bytes - before.bytes};
+}
+
+Scene rods(std::size_t n, std::vector<Effect> effects = {}) {
+  return {.links = std::vector<Link>(n, Link::uniform_rod(1.0, 0.7)),
+          .effects = std::move(effects)};
+}
+
+Options kept(Store store) {
+  Options options{.store = store};
   options.method = "dopri5";
-  options.store = store;
-  options.ledger = ledger;
-  options.compensated = compensated;
-  if (store == Store::times) options.t_eval = {0.5 * t_end, t_end};
-  const long long before = allocations;
-  const Solution solution = simulate(scene, std::vector<double>(n, 0.7),
-                                     std::vector<double>(n, 0.1), 0.0, t_end, options);
-  CHECK(solution.statistics.accepted > 10);
-  return allocations - before;
+  return options;
 }
 
 }  // namespace
 
 TEST_CASE("events that are not found ask for no memory either") {
-  const std::vector<Event> events = {
+  Options options = kept(Store::end);
+  options.events = {
       {.function = events::LinkAngle{.link = 1, .value = 50.0}, .terminal = 1},
       {.function = events::JointAngle{.joint = 2, .value = -50.0}},
       {.function = events::TipLine{.point = {0.0, 2.5}, .normal = {0.3, 1.0}}},
       {.function = events::Function{.f = [](double, std::span<const double> q,
                                             auto) { return q[0] + 50.0; }}},
   };
-  const std::vector<Link> links(3, Link::uniform_rod(1.0, 0.7));
-  const auto count_to = [&](double t_end) {
-    Options options;
-    options.method = "dopri5";
-    options.store = Store::end;
-    options.events = events;
-    const long long before = allocations;
-    const Solution solution =
-        simulate({.links = links}, {0.7, 0.7, 0.7}, {0.1, 0.1, 0.1}, 0.0, t_end, options);
-    CHECK(solution.status == Status::finished);
-    return allocations - before;
-  };
-  CHECK(count_to(20.0) == count_to(2.0));
+  CHECK(asked_for(rods(3), options, 20.0).times == asked_for(rods(3), options, 2.0).times);
 }
 
 // This is skipped under the address sanitizer, where it takes a minute and the count is the same.
@@ -84,43 +85,28 @@ TEST_CASE("the number of allocations does not depend on the number of steps" *
   };
   std::vector<Scene> scenes;
   for (const std::size_t n : {1, 2, 3, 6}) {
-    const std::vector<Link> links(n, Link::uniform_rod(1.0, 1.0));
-    scenes.push_back({.links = links});
-    scenes.push_back({.links = links, .effects = effects});
-    if (n > 1) scenes.push_back({.links = links, .effects = {Lock{.joint = 2, .angle = 0.0}}});
+    scenes.insert(scenes.end(), {rods(n), rods(n, effects)});
+    if (n > 1) scenes.push_back(rods(n, {Lock{.joint = 2, .angle = 0.0}}));
   }
   for (const Scene& scene : scenes) {
-    for (const Store store : {Store::end, Store::times}) {
-      for (const bool ledger : {false, true}) {
-        for (const bool compensated : {false, true}) {
-          // After a thousand steps of a scene with effects, the message at the end looks for a fast
-          // mode.
-          const double t_end = scene.effects.empty() ? 0.5 : 60.0;
-          const long long few = count(scene, store, t_end, ledger, compensated);
-          CHECK(few > 0);
-          CHECK(count(scene, store, 100.0, ledger, compensated) == few);
-        }
-      }
+    for (int kind = 0; kind < 8; ++kind) {
+      Options options = kept(kind % 2 == 0 ? Store::end : Store::times);
+      options.ledger = (kind & 2) != 0;
+      options.compensated = (kind & 4) != 0;
+      const auto count = [&](double t_end) {
+        if (options.store == Store::times) options.t_eval = {0.5 * t_end, t_end};
+        return asked_for(scene, options, t_end).times;
+      };
+      // After a thousand steps of a scene with effects, the message at the end looks for a fast
+      // mode.
+      const long long few = count(scene.effects.empty() ? 0.5 : 60.0);
+      CHECK(few > 0);
+      CHECK(count(100.0) == few);
     }
   }
 }
 
 TEST_CASE("a run that solves for no joint takes memory in proportion to its links") {
-  const auto asked_for = [](std::size_t n, const std::vector<Effect>& effects,
-                            const std::string& method) {
-    const Scene scene{.links = std::vector<Link>(n, Link::uniform_rod(1.0, 1.0)),
-                      .effects = effects};
-    Options options;
-    options.store = Store::end;
-    options.method = method;
-    options.max_steps = 12;
-    const long long before = bytes;
-    const Solution solution = simulate(scene, std::vector<double>(n, 0.7),
-                                       std::vector<double>(n, 0.1), 0.0, 1.0, options);
-    CHECK(solution.statistics.accepted > 0);
-    CHECK(solution.statistics.njev == 0);
-    return bytes - before;
-  };
   const std::vector<std::vector<Effect>> every_kind = {
       {},
       {ViscousJoint{.joint = 1, .damping = 0.01}},
@@ -131,7 +117,11 @@ TEST_CASE("a run that solves for no joint takes memory in proportion to its link
   for (const std::vector<Effect>& effects : every_kind) {
     for (const std::string method : {"dopri5", "dopri5-radau5", "taylor-radau5"}) {
       CAPTURE(method);
-      CHECK(2 * asked_for(800, effects, method) < 5 * asked_for(400, effects, method));
+      Options options = kept(Store::end);
+      options.method = method;
+      options.max_steps = 12;
+      const auto needed = [&](int n) { return asked_for(rods(n, effects), options, 1.0).bytes; };
+      CHECK(2 * needed(800) < 5 * needed(400));
     }
   }
 }

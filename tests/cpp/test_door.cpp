@@ -1,9 +1,14 @@
-// What C++ users give and get: vectors of any kind, tolerances, states of a run, its continuation.
+// What C++ users give and get: vectors of any kind, tolerances, states of a run, its continuation,
+// effects of their own.
 #include <doctest/doctest.h>
+
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "pendcore/pendcore.hpp"
@@ -36,19 +41,12 @@ TEST_CASE(
   CHECK(first_of(columns.row(0).transpose()) == 3.0);
 }
 
-TEST_CASE("one tolerance stands for all components") {
-  Options options;
-  options.rtol = 1e-6;
-  CHECK(options.rtol == Tolerance{1e-6});
-  const Solution one = run_of(1.0, options);
-  options.rtol = {1e-6, 1e-6, 1e-6, 1e-6};
-  CHECK(fingerprint(run_of(1.0, options)) == fingerprint(one));
-  options.rtol = {1e-6, 1e-6, 1e-6};
-  CHECK_THROWS_WITH(run_of(1.0, options),
+TEST_CASE("tolerances and times are given as a number or a vector of any kind") {
+  const Solution one = run_of(1.0, {.rtol = 1e-6});
+  CHECK(one.options.rtol == Tolerance{1e-6});
+  CHECK(fingerprint(run_of(1.0, {.rtol = {1e-6, 1e-6, 1e-6, 1e-6}})) == fingerprint(one));
+  CHECK_THROWS_WITH(run_of(1.0, {.rtol = {1e-6, 1e-6, 1e-6}}),
                     "rtol: has 3 numbers: must have 1, or 4 (q_1 .. q_n, qd_1 .. qd_n)");
-}
-
-TEST_CASE("tolerances and times are given as a vector of any kind") {
   const Eigen::Vector4d each(1e-6, 1e-7, 1e-8, 1e-9);
   const Tolerance listed = {1e-6, 1e-7, 1e-8, 1e-9};
   CHECK(Tolerance(each) == listed);
@@ -87,23 +85,22 @@ TEST_CASE("what is read of a solution that nobody keeps is a copy") {
 }
 
 TEST_CASE("every way to read a run reads the same states") {
-  Options options;
-  options.ledger = true;
   Scene scene = Scene::textbook();
   scene.effects = {ViscousJoint{.joint = 2, .damping = 0.1}};
-  const Solution run = simulate(scene, {0.7, 1.1}, {0.0, 0.3}, 0.0, 2.0, options);
+  const Solution run = simulate(scene, {0.7, 1.1}, {0.0, 0.3}, 0.0, 2.0, {.ledger = true});
   REQUIRE(run.t.size() > 5);
   const Matrix sampled = run.sample(run.t);
   for (std::size_t i = 0; i < run.t.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const State at = run.at(run.t[i]);
     CHECK(run[i].t == run.t[i]);
-    CHECK(run[i].q == run.q().row(row).transpose());
-    CHECK(run[i].qd == run.qd().row(row).transpose());
-    CHECK(run[i].q == at.q);
+    for (const Vector& q :
+         {Vector(run[i].q), Vector(run.q().row(row)), Vector(sampled.row(row).head(2))}) {
+      CHECK(q == at.q);
+    }
     CHECK(run[i].qd == at.qd);
+    CHECK(run.qd().row(row).transpose() == at.qd);
     CHECK(run[i].accounts == at.accounts);
-    CHECK(sampled.row(row).head(2).transpose() == at.q);
     CHECK(sampled(row, 4) == at.accounts(0));
   }
   CHECK(run.back().q == run[run.t.size() - 1].q);
@@ -154,24 +151,19 @@ TEST_CASE("a refused start is told in no language's words") {
 
 TEST_CASE("a number that is left out and has no default is refused by its name") {
   Scene scene = Scene::textbook();
-  const auto told = [&](const Effect& effect) {
+  const auto check_refused = [&](const Effect& effect, const std::string& message) {
     scene.effects = {effect};
-    try {
-      check(scene);
-    } catch (const std::invalid_argument& refusal) {
-      return std::string(refusal.what()).substr(std::string("effect 1 (").size());
-    }
-    return std::string();
+    CHECK_THROWS_WITH(check(scene), doctest::Contains(("effect 1 (" + message).c_str()));
   };
-  CHECK(told(ViscousJoint{.joint = 2}) ==
-        "viscous_joint): damping = nan: must be finite (N m s/rad)");
-  CHECK(told(ViscousJoint{.damping = 0.1}) ==
-        "viscous_joint): joint = 0: must be a whole number, 1 or more");
-  CHECK(told(JointStop{.joint = 1}) ==
-        "joint_stop): range[0] = nan: must be a number; -inf or inf for none (rad)");
-  CHECK(told(Motor{.joint = 1, .sinusoid = Sinusoid{.amplitude = 2.0}}) ==
-        "motor): sinusoid.angular_frequency = nan: must be finite (rad/s)");
-  for_each_kind([&](const auto& nothing) { CHECK_FALSE(told(nothing).empty()); });
+  check_refused(ViscousJoint{.joint = 2},
+                "viscous_joint): damping = nan: must be finite (N m s/rad)");
+  check_refused(ViscousJoint{.damping = 0.1},
+                "viscous_joint): joint = 0: must be a whole number, 1 or more");
+  check_refused(JointStop{.joint = 1},
+                "joint_stop): range[0] = nan: must be a number; -inf or inf for none (rad)");
+  check_refused(Motor{.joint = 1, .sinusoid = Sinusoid{.amplitude = 2.0}},
+                "motor): sinusoid.angular_frequency = nan: must be finite (rad/s)");
+  for_each_kind([&](const auto& nothing) { check_refused(nothing, ""); });
   scene.effects.clear();
   scene.links[0] = {.mass = 1.0, .length = 1.0, .inertia = 0.1};
   CHECK_THROWS_WITH(check(scene), doctest::Contains("link 1: center = nan: must be finite (m, "));
@@ -181,21 +173,56 @@ TEST_CASE("a run goes on with its own scene, and with no other") {
   const Solution run = run_of(1.0);
   const Scene scene = Scene::textbook();
   CHECK(fingerprint(resume(scene, run, 2.0)) == fingerprint(run_of(2.0)));
-  Scene longer = scene;
+  Scene longer = scene, heavier = scene, damped = scene;
   longer.links.push_back(Link::uniform_rod(1.0, 1.0));
-  CHECK_THROWS_WITH(
-      resume(longer, run, 2.0),
-      "scene: has 3 links, and the solution has 2: must be the scene of the solution");
-  Scene heavier = scene;
   heavier.links[1].mass = 1.5;
-  CHECK_THROWS_WITH(resume(heavier, run, 2.0),
-                    "scene: link[2].mass = 1.5, and the solution has 1.0: must be the scene of the "
-                    "solution");
-  Scene damped = scene;
   damped.effects = {ViscousJoint{.joint = 1, .damping = 0.1}};
-  CHECK_THROWS_WITH(
-      resume(damped, run, 2.0),
-      "scene: has other effects than the solution: must be the scene of the solution");
+  for (const auto& [other, what] : {std::pair(longer, "has 3 links, and the solution has 2: must"),
+                                    {heavier, "link[2].mass = 1.5, and the solution has 1.0: must"},
+                                    {damped, "has other effects than the solution: must"}}) {
+    const std::string message = std::string("scene: ") + what + " be the scene of the solution";
+    CHECK_THROWS_WITH(resume(other, run, 2.0), message.c_str());
+  }
   CHECK_THROWS_WITH(resume(scene, Solution(), 2.0),
                     "solution: is empty: must be what simulate() or resume() returned");
+}
+
+namespace {
+
+using Row = std::span<const double>;
+
+Solution run_with(std::size_t n, std::vector<Effect> effects) {
+  const Scene scene{.links = std::vector<Link>(n, Link::uniform_rod(1.0, 1.0)),
+                    .effects = std::move(effects)};
+  return simulate(scene, std::vector<double>(n, 0.4), std::vector<double>(n, 1.0), 0.0, 2.0,
+                  {.rtol = 1e-12, .atol = 1e-13});
+}
+
+}  // namespace
+
+TEST_CASE("a callable acts as the effect that it computes, whatever the number of links") {
+  const double damping = 0.3;
+  auto damp = [&](double, Row, Row qd, std::span<double> Q) { Q[0] -= damping * qd[0]; };
+  for (const std::size_t n : {1, 2, 3, 5}) {
+    const Solution own = run_with(n, {CompiledUser::of(damp)});
+    const Solution built_in = run_with(n, {ViscousJoint{.joint = 1, .damping = damping}});
+    REQUIRE(own.status == Status::finished);
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+      CHECK(own.y_reached[i] == doctest::Approx(built_in.y_reached[i]).epsilon(1e-10));
+    }
+    CHECK(run_with(n, {}).y_reached[0] != doctest::Approx(own.y_reached[0]).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("an exception in a callable ends the run and is kept with what was computed") {
+  for (const double limit : {1.0, -1.0}) {
+    auto fail = [&](double t, Row, Row, std::span<double>) {
+      if (t > limit) throw std::runtime_error("out of reach");
+    };
+    const Solution solution = run_with(2, {CompiledUser::of(fail)});
+    CHECK(solution.status == Status::callback_error);
+    CHECK(solution.t_reached >= (limit > 0.0 ? 0.5 : 0.0));
+    CHECK(solution.t_reached <= std::max(limit, 0.0));
+    CHECK_THROWS_WITH(std::rethrow_exception(solution.error), "out of reach");
+  }
 }

@@ -19,15 +19,16 @@ struct Turning {
   double end[2] = {};
 
   Turning() {
-    const double tolerance[] = {1e-6, 1e-6};
-    const double y[] = {0.0, 1.0};
-    const double dydt[] = {1.0, 0.0};
+    const double tolerance[] = {1e-6, 1e-6}, y[] = {0.0, 1.0}, dydt[] = {1.0, 0.0};
     stepper->set_tolerances(tolerance, tolerance);
     stepper->start(y, dydt);
     stepper->attempt({0.0}, 1.0, 1.0);
     rows.resize(static_cast<std::size_t>(stepper->interpolant_degree() + 1) * 2);
     stepper->interpolant(1.0, rows.data());
     stepper->get_new_state(end);
+  }
+  StepEnd look(EventFinder& finder) {
+    return finder.look(*stepper, rows.data(), {0.0, 0.0}, 1.0, 1.0);
   }
 };
 
@@ -47,15 +48,13 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
   };
   std::vector<FoundEvent> found;
   EventFinder finder(turning.scene, events, found, {}, 0.0);
-  const StepEnd end = finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-  CHECK(end.kind == StepEnd::Kind::whole);
+  CHECK(turning.look(finder).kind == StepEnd::Kind::whole);
   REQUIRE(found.size() == 2);  // angle 0.5 within the step, angle 1 at its end
   CHECK(found[0].event == 3);
   CHECK(found[1].event == 2);
   CHECK(found[1].t == 1.0);
   CHECK(found[1].y_before.empty());
-  const double before[] = {1.0, 1.0};
-  const double after[] = {1.0, -0.5};
+  const double before[] = {1.0, 1.0}, after[] = {1.0, -0.5};
   finder.jump(1.0, before, after);
   REQUIRE(found.size() == 4);
   CHECK(found[0].y_before.empty());
@@ -67,56 +66,6 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
   CHECK(found[2].event == 0);  // the rate falls, so this is not event 1
   CHECK(found[3].event == 4);
   CHECK(found[2].direction == -1);
-}
-
-TEST_CASE("a jump into zero is an event, and a jump from zero is not") {
-  Turning turning;
-  const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
-  std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {}, 0.0);
-  finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-  CHECK(found.empty());
-  const double moves[] = {1.0, 1.0};
-  const double rests[] = {1.0, 0.0};
-  finder.jump(1.0, moves, rests);
-  REQUIRE(found.size() == 1);
-  finder.jump(1.0, rests, moves);
-  CHECK(found.size() == 1);
-}
-
-TEST_CASE("a jump may end the run, once") {
-  Turning turning;
-  const std::vector<Event> events = {
-      {.function = events::RateZero{.joint = 1, .link = {}}, .terminal = 1}};
-  const double before[] = {1.0, 1.0};
-  const double after[] = {1.0, -1.0};
-  for (const long long passed : {0, 1}) {
-    std::vector<FoundEvent> found;
-    EventFinder finder(turning.scene, events, found, {passed}, 0.0);
-    CHECK(finder.may_end());
-    finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-    finder.jump(1.0, before, after);
-    CHECK(finder.ended_by() == (passed == 0 ? 0 : -1));
-    CHECK(found.size() == 1);
-  }
-}
-
-TEST_CASE("after a jump a step begins with the value that the jump left") {
-  Turning turning;
-  int calls = 0;
-  const std::vector<Event> events = {{.function = events::Function{.f =
-                                                                       [&](double t, auto, auto) {
-                                                                         ++calls;
-                                                                         return t - 0.5;
-                                                                       },
-                                                                   .samples = 1}}};
-  std::vector<FoundEvent> found;
-  EventFinder finder(turning.scene, events, found, {}, -2.0);
-  finder.look(*turning.stepper, turning.rows.data(), {-1.0, 0.0}, 1.0, 0.0);
-  CHECK(calls == 2);
-  finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
-  CHECK(found.size() == 1);
-  CHECK(found[0].t == 0.5);
 }
 
 TEST_CASE("an event within rounding of the start of a run is not armed, and elsewhere it is") {
@@ -132,17 +81,10 @@ TEST_CASE("an event within rounding of the start of a run is not armed, and else
     for (const double t0 : {0.0, -2.0}) {
       std::vector<FoundEvent> found;
       EventFinder finder(turning.scene, events, found, {}, t0);
-      finder.look(*turning.stepper, turning.rows.data(), {0.0, 0.0}, 1.0, 1.0);
+      turning.look(finder);
       const bool is_on_it = off == 1e-16 && t0 == 0.0;
       CHECK(found.size() == (is_on_it ? 1 : 4));
       for (const FoundEvent& one : found) CHECK(one.t < 1e-11);
     }
   }
-}
-
-TEST_CASE("events that are out of range are refused by name") {
-  const Event event{.function = events::LinkAngle{.link = 3, .value = 0.0}, .name = "far"};
-  CHECK(event_name(event, 1) == "event 2 (link_angle, 'far')");
-  CHECK_THROWS_WITH_AS(check_event("here: ", event, 2), "here: link = 3: must be 1 to 2",
-                       std::invalid_argument);
 }

@@ -14,62 +14,57 @@ namespace {
 /// Weights are sums of large coefficients. An error needs few digits.
 constexpr double rounding = 1e-11;
 
-double sum(const LobattoPoints& points, const LobattoPoints::Numbers& weights, int power) {
-  double total = 0.0;
-  for (std::size_t j = 0; j < points.count; ++j) {
-    total += weights[j] * std::pow(points.theta[j], power);
-  }
-  return total;
+/// By how much the sum of a power at the points is off, with weights for each.
+template <class Weight>
+double off(const LobattoPoints& points, int power, double exact, Weight weight) {
+  double total = -exact;
+  for (std::size_t j = 0; j < points.count; ++j)
+    total += weight(j) * std::pow(points.theta[j], power);
+  return std::abs(total);
 }
 
-/// By how much the integral of theta^power from 0 on is wrong, and its integral.
+/// The double integral of theta^power from 0 on.
+double twice(double theta, int power) {
+  return std::pow(theta, power + 2) / ((power + 1) * (power + 2));
+}
+
 void check(const LobattoPoints& points, const LobattoPoints::Sums& sums, int power) {
   const double once = std::pow(sums.theta, power + 1) / (power + 1);
-  const double twice = once * sums.theta / (power + 2);
-  CHECK(std::abs(sum(points, sums.once, power) - once) < rounding);
-  CHECK(std::abs(sum(points, sums.twice, power) - twice) < rounding);
+  CHECK(off(points, power, once, [&](auto j) { return sums.once[j]; }) < rounding);
+  const double exact = twice(sums.theta, power);
+  CHECK(off(points, power, exact, [&](auto j) { return sums.twice[j]; }) < rounding);
 }
 
 }  // namespace
 
-TEST_CASE("over the whole interval powers up to twice the number of points less 3 are exact") {
-  for (int count = 5; count <= 9; ++count) {
-    const LobattoPoints& points = lobatto_points(count);
-    const LobattoPoints::Sums& to_end = points.sums[points.count];
-    for (int power = 0; power <= 2 * count - 3; ++power) {
-      CHECK(std::abs(sum(points, to_end.once, power) - 1.0 / (power + 1)) < rounding);
-    }
-    CHECK(std::abs(sum(points, to_end.once, 2 * count - 2) - 1.0 / (2 * count - 1)) > 1e-10);
-    for (int power = 0; power < count; ++power) check(points, to_end, power);
-  }
-}
-
-TEST_CASE("up to a point, the points before it integrate squares, or what goes through them all") {
+TEST_CASE("weights integrate powers exactly, as far as they should") {
   for (int count = 5; count <= 9; ++count) {
     const LobattoPoints& points = lobatto_points(count);
     CHECK(points.theta[points.count - 1] == 1.0);
+    // Over the whole interval, powers up to twice the number of points less 3.
+    const LobattoPoints::Sums& to_end = points.sums[points.count];
+    const auto off_by = [&](int power) {
+      return off(points, power, 1.0 / (power + 1), [&](auto j) { return to_end.once[j]; });
+    };
+    for (int power = 0; power <= 2 * count - 3; ++power) CHECK(off_by(power) < rounding);
+    CHECK(off_by(2 * count - 2) > 1e-10);
+    for (int power = 0; power < count; ++power) check(points, to_end, power);
+    // Up to a point, squares by the points before it, or what goes through them all.
     for (int i = 1; i < count; ++i) {
       for (int power = 0; power < std::min(i, 3); ++power) check(points, points.sums[i], power);
       for (int j = i; j < count; ++j) CHECK(points.sums[i].once[j] == 0.0);
     }
-  }
-}
-
-TEST_CASE("the polynomials are the double integrals within the interval") {
-  for (int count = 5; count <= 9; ++count) {
-    const LobattoPoints& points = lobatto_points(count);
-    for (int power = 0; power < count; ++power) {
-      for (const double theta : {0.1, 0.4, 0.73, 1.0}) {
-        double total = 0.0;
-        for (std::size_t j = 0; j < points.count; ++j) {
-          double value = 0.0;
-          for (std::size_t k = points.twice_at[j].size(); k-- > 0;) {
-            value = theta * value + points.twice_at[j][k];
-          }
-          total += value * std::pow(points.theta[j], power);
+    // Within the interval, the polynomials are the double integrals.
+    for (const double theta : {0.1, 0.4, 0.73, 1.0}) {
+      const auto value = [&](std::size_t j) {
+        double sum = 0.0;
+        for (std::size_t k = points.twice_at[j].size(); k-- > 0;) {
+          sum = theta * sum + points.twice_at[j][k];
         }
-        const double exact = std::pow(theta, power + 2) / ((power + 1) * (power + 2));
-        CHECK(std::abs(total - exact) < rounding);
+        return sum;
+      };
+      for (int power = 0; power < count; ++power) {
+        CHECK(off(points, power, twice(theta, power), value) < rounding);
       }
     }
   }

@@ -23,26 +23,26 @@ Number random_number() {
 }
 
 template <class Any>
-void fill(Any& matrix) {
+Any filled(Eigen::Index rows, Eigen::Index columns) {
+  Any matrix;
+  matrix.resize(rows, columns);
   for (auto& one : matrix.reshaped()) one = random_number<typename Any::Scalar>();
+  return matrix;
 }
 
 /// With M = 1 - h B - h^2 A and random A, M, h, r and s: M y = h (s + h A r), x = h (r + y).
 template <class Number, int links>
 void check_solution(int n) {
   using System = NewtonSystem<Number, links>;
+  using Column = Eigen::Matrix<Number, links, 1>;
   System system(n);
-  typename System::template Square<double> by_q(n, n);
-  fill(by_q);
-  fill(system.matrix);
-  if (n > 1) system.matrix.diagonal().setZero();
-  Eigen::Matrix<Number, links, 1> r(n), s(n);
-  fill(r);
-  fill(s);
+  const auto by_q = filled<typename System::template Square<double>>(n, n);
+  const auto r = filled<Column>(n, 1), s = filled<Column>(n, 1);
   system.h = random_number<Number>();
+  system.matrix = filled<decltype(system.matrix)>(n, n);
+  if (n > 1) system.matrix.diagonal().setZero();
   const auto matrix = system.matrix;
-  auto x = r;
-  auto y = s;
+  auto x = r, y = s;
   REQUIRE(system.factor({}));
   system.solve(by_q, x, y);
   const auto side = (system.h * (s + system.h * (by_q * r))).eval();
@@ -50,21 +50,13 @@ void check_solution(int n) {
   CHECK((x - system.h * (r + y)).norm() < 1e-14);
 }
 
-template <class Number>
-void check_solutions() {
+}  // namespace
+
+TEST_CASE_TEMPLATE("real and complex systems of any size are solved, also with a diagonal of zeros",
+                   Number, double, Complex) {
   check_solution<Number, 1>(1);
   check_solution<Number, 2>(2);
   for (int n = 1; n < 12; ++n) check_solution<Number, Eigen::Dynamic>(n);
-}
-
-}  // namespace
-
-TEST_CASE("real systems of any size are solved, also with zeros on the diagonal") {
-  check_solutions<double>();
-}
-
-TEST_CASE("complex systems of any size are solved, also with zeros on the diagonal") {
-  check_solutions<Complex>();
 }
 
 TEST_CASE("an elimination that is told not to go on ends early") {

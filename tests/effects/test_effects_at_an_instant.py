@@ -147,7 +147,8 @@ def test_a_spline_of_three_knots_is_the_natural_cubic():
 
 
 # Signs of another source, as conventions.md has them: an arm that counts
-# counter-clockwise, the planar elbow manipulator of Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 7.4.
+# counter-clockwise, the planar elbow manipulator of Spong, Hutchinson, Vidyasagar, Robot Modeling
+# and Control (2006), section 7.4.
 # Its angles psi are relative, psi_1 from +x, and y points upward.
 MASS, LENGTH, CENTER, INERTIA = (1.3, 0.8), (0.7, 0.5), (0.3, 0.2), (0.05, 0.02)
 G = 9.81

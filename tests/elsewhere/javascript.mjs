@@ -1,9 +1,7 @@
-/**
- * Runs cases in the WebAssembly module, as its users do: reads a list of cases as JSON from standard
- * input and writes what came of each.
- *
- *     node [--experimental-wasm-relaxed-simd] tests/elsewhere/javascript.mjs PACKAGE < cases.json
- */
+// Runs cases in the WebAssembly module, as its users do: reads a list of cases as JSON from standard
+// input and writes what came of each.
+//
+//     node [--experimental-wasm-relaxed-simd] tests/elsewhere/javascript.mjs PACKAGE < cases.json
 
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";

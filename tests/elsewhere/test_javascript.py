@@ -6,6 +6,8 @@ import hashlib
 import json
 import os
 import subprocess
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +21,14 @@ PACKAGE = HERE.parents[1] / "build/elsewhere/wasm32/package"
 AT = [0.1, 1.7, 3.9]
 T_LONGER = 5.0
 
+ASKED = "PENDCORE_TEST_JAVASCRIPT" in os.environ
 pytestmark = [
     pytest.mark.outside_build,
-    pytest.mark.skipif(
-        "PENDCORE_TEST_JAVASCRIPT" not in os.environ,
-        reason="`make elsewhere MACHINES=wasm32` builds the module and tests it",
-    ),
+    pytest.mark.skipif(not ASKED, reason="`make elsewhere MACHINES=wasm32` builds and tests it"),
 ]
 
 
-def run_in_javascript(cases: list[dict[str, Any]], *flags: str) -> list[dict[str, Any]]:
+def run_in_javascript(*cases: dict[str, Any], flags: Sequence[str] = ()) -> list[dict[str, Any]]:
     done = subprocess.run(
         ["node", *flags, HERE / "javascript.mjs", PACKAGE],
         input=json.dumps(cases), text=True, capture_output=True, check=False,
@@ -38,22 +38,16 @@ def run_in_javascript(cases: list[dict[str, Any]], *flags: str) -> list[dict[str
     return found
 
 
-def scene_for_javascript(effects: list[dict[str, Any]]) -> dict[str, Any]:
+def case_of(effects: Sequence[Any] = (), start: Any = START, **options: Any) -> dict[str, Any]:
     links = [pc.Link(**rod) for rod in RODS]
-    return {
-        "links": [
-            {"mass": x.mass, "length": x.length, "center": x.center, "inertia": x.inertia}
-            for x in links
-        ],
-        "effects": effects,
-    }
+    scene = {"links": [asdict(link) for link in links], "effects": effects}
+    return {"scene": scene, "start": start, "options": options, "at": AT}
 
 
 def digest(*arrays: Any) -> str:
-    found = hashlib.sha256()
-    for array in arrays:
-        found.update(np.ascontiguousarray(array, dtype=float).tobytes())
-    return found.hexdigest()
+    return hashlib.sha256(
+        b"".join(np.asarray(x, dtype=float).tobytes() for x in arrays)
+    ).hexdigest()
 
 
 def kept_rows(solution: pc.Solution) -> Any:
@@ -65,34 +59,27 @@ def kept_rows(solution: pc.Solution) -> Any:
 def outcomes(request: pytest.FixtureRequest) -> dict[str, dict[str, Any]]:
     flags = ["--experimental-wasm-relaxed-simd"] if request.param == "instruction" else []
     cases = [
-        {
-            "scene": scene_for_javascript(effects),
-            "start": STARTS.get(name, START),
-            "options": options,
-            "at": AT,
-            "t_longer": T_LONGER,
-        }
+        case_of(effects, STARTS.get(name, START), **options) | {"t_longer": T_LONGER}
         for name, (effects, options) in CASES.items()
     ]
-    return dict(zip(CASES, run_in_javascript(cases, *flags), strict=True))
+    return dict(zip(CASES, run_in_javascript(*cases, flags=flags), strict=True))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_run_has_the_bits_of_python(name: str, outcomes: dict[str, dict[str, Any]]) -> None:
     effects, options = CASES[name]
-    scene = scene_in_python(effects)
+    scene, found = scene_in_python(effects), outcomes[name]
     q0, qd0 = (STARTS.get(name, START)[of] for of in ("q0", "qd0"))
-    sol = pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0.0, 4.0), on_failure="ignore", **options)
-    found = outcomes[name]
+    sol = pc.simulate(scene, (0.0, 4.0), q0, qd0, on_failure="ignore", **options)
+    longer = sol.resume(T_LONGER)
     assert (found["status"], found["message"]) == (sol.status, sol.message)
     assert found["accepted"] == sol.stats.accepted
     assert found["run"] == digest(sol.t, kept_rows(sol))
-    longer = sol.resume(T_LONGER)
     assert found["longer"] == digest(longer.t, kept_rows(longer))
     if not sol._run.ledger:
         assert found["at"] == digest(sol(AT).T)
-    start = scene._compiled
     t, q, qd = np.array([0.0]), np.array([q0]), np.array([qd0])
+    start = scene._compiled
     assert found["state"] == digest(
         start.accelerations(t, q, qd), start.reactions(t, q, qd), *start.energy(t, q, qd),
         start.positions(t, q),
@@ -100,12 +87,11 @@ def test_a_run_has_the_bits_of_python(name: str, outcomes: dict[str, dict[str, A
 
 
 def test_the_hash_of_a_run_is_the_recorded_one() -> None:
-    scene = {"links": [{"mass": 1, "length": 1, "center": 0.5, "inertia": 1 / 12}] * 2}
-    start = {"q0": [0.25 * np.pi, np.pi / 3], "t_end": 60}
-    case = {"scene": scene, "start": start, "options": {"method": "dopri5"}, "at": AT}
-    (found,) = run_in_javascript([case])
-    recorded = HERE.parent / "cpp/trajectory_hash.txt"
-    assert recorded.read_text().splitlines()[0] == f"textbook {found['hash']}"
+    case = case_of(start={"q0": [0.25 * np.pi, np.pi / 3], "t_end": 60}, method="dopri5")
+    case["scene"] = {"links": [{"mass": 1, "length": 1, "center": 0.5, "inertia": 1 / 12}] * 2}
+    (found,) = run_in_javascript(case)
+    recorded = (HERE.parent / "cpp/trajectory_hash.txt").read_text()
+    assert recorded.startswith(f"textbook {found['hash']}\n")
 
 
 @pytest.mark.parametrize(
@@ -131,13 +117,11 @@ def test_the_hash_of_a_run_is_the_recorded_one() -> None:
 def test_bad_input_is_refused_in_words_and_the_next_run_is_right(
     changed: dict[str, Any], message: str
 ) -> None:
-    good: dict[str, Any] = {
-        "scene": scene_for_javascript([]), "start": START, "options": {}, "at": AT,
-    }  # fmt: skip
+    good = case_of()
     bad = dict(good)
     for name, value in changed.items():
         bad[name] = {**good[name], **value} if isinstance(value, dict) else value
-    refused, after, before = run_in_javascript([bad, good, good])
+    refused, after, before = run_in_javascript(bad, good, good)
     assert message in refused["error"]
     assert after == before
     assert after["status"] == "finished"

@@ -1,4 +1,4 @@
-"""A C++ project outside this one uses what the wheel installed."""
+"""A C++ project outside this one, of docs/how_to/cpp.md, uses what the wheel installed."""
 
 from __future__ import annotations
 
@@ -12,9 +12,14 @@ import numpy as np
 import pendcore as pc
 import pytest
 
-PROJECT = Path(__file__).parents[1] / "consumer"
-PAGE = (PROJECT.parents[1] / "docs/how_to/cpp.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs/how_to/cpp.md").read_text()
+NAMES = ["end_angles", "forces", "events"]
 CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
+INSTALLED = Path(pc.__file__).parent
+
+
+def on_page(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
 
 
 def run(*command: str | Path) -> str:
@@ -31,91 +36,70 @@ def test_the_entry_point_names_the_package_that_cmake_searches() -> None:
 
 @pytest.mark.outside_build
 @pytest.mark.parametrize("flags", ["", "-O3 -march=native -ffast-math"])
-def test_an_outside_project_gets_the_bits_of_python_whatever_its_flags(
-    flags: str, tmp_path: Path
-) -> None:
-    root = Path(pc.__file__).parent
+def test_the_pages_project_gets_the_bits_of_python_whatever_its_flags(flags, tmp_path) -> None:
+    for name, program in zip(NAMES, on_page("cpp"), strict=True):
+        (tmp_path / f"{name}.cpp").write_text(program)
+    (lines,) = on_page("cmake")
+    lines = lines.replace("(pendcore ", "(pendcore 0.1 ") + 'message("${pendcore_VERSION}")\n'
+    for name in NAMES[1:]:  # "two more lines like those above"
+        lines += re.sub(
+            "end_angles", name, "".join(re.findall(r"^(?:add|target)_.*\n", PAGE, re.M))
+        )
+    (tmp_path / "CMakeLists.txt").write_text(lines)
     # Neither the system nor Python says where Eigen is: it lies beside the package.
-    hidden = [
+    where = [
+        f"-Dpendcore_ROOT={INSTALLED}",
         "-DCMAKE_IGNORE_PATH=/usr/share/eigen3/cmake",
         "-DCMAKE_DISABLE_FIND_PACKAGE_Python=ON",
     ]
-    where = [f"-Dpendcore_ROOT={root}", *hidden]
-    configured = run(CMAKE, "-S", PROJECT, "-B", tmp_path, *where, f"-DCMAKE_CXX_FLAGS={flags}")
-    assert f"pendcore {version('pendcore')}" in configured
-    assert "cmeel.prefix" in configured
-    run(CMAKE, "--build", tmp_path)
+    build = tmp_path / "build"
+    told = run(CMAKE, "-S", tmp_path, "-B", build, *where, f"-DCMAKE_CXX_FLAGS={flags}")
+    assert f"pendcore {version('pendcore')}" in told
+    assert "cmeel.prefix" in told
+    run(CMAKE, "--build", build)
 
-    printed = [float.fromhex(word) for word in run(tmp_path / "end_angles").split()]
-    solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
-    assert printed == list(solution.q[-1])
-    assert run(tmp_path / "forces") == forces_of_python()
-    assert run(tmp_path / "events") == events_of_python()
+    printed = run(build / "end_angles")
+    solution = pc.simulate(pc.Scene.textbook(), (0, 5), [np.pi / 4, np.pi / 3])
+    assert [float.fromhex(word) for word in printed.split()] == list(solution.q[-1])
+    assert f"build/end_angles   # {printed.strip()}, the bits of Python" in PAGE
+    for name, python in (("forces", forces()), ("events", events())):
+        assert run(build / name) == python
+        assert python in on_page("text")
+
+
+def forces() -> str:
+    """Return what forces.cpp prints, by the same run in Python."""
+    rod = pc.Link(mass=1.0, length=1.0)
+    effects = [pc.effects.ViscousJoint(1, 0.1), pc.effects.Motor(2, constant=0.5)]
+    scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
+    how = {"method": "dop853", "rtol": 1e-10, "atol": 1e-12, "ledger": True}
+    sol = pc.simulate(scene, (0, 5), [0.8, 1.0], t_eval=[0.0, 2.5, 5.0], **how)
+    energy = sol.energy()
+    rows = zip(sol.t, sol.accelerations(), sol.reactions()[:, 0], energy.total,
+               energy.ledger.motor, strict=True)  # fmt: skip
+    return "".join(
+        f"{t:.1f} s: qdd {a:8.4f} {b:8.4f}, F_01 {x:8.4f} {y:8.4f}, "
+        f"T + V {total:9.5f} J, motor {motor:8.5f} J\n"
+        for t, (a, b), (x, y), total, motor in rows
+    )
+
+
+def events() -> str:
+    """Return what events.cpp prints, by the same run in Python."""
+    turn = pc.events.RateZero(link=1)
+    passage = pc.events.TipLine(point=(0.0, 0.0), normal=(1.0, 0.0), direction=-1, terminal=3)
+    watched = {turn: "first link turns", passage: "tip passes"}
+    sol = pc.simulate(pc.Scene.textbook(), (0, 10), [0.8, 1.0], rtol=1e-10, events=[*watched])
+    found = [
+        f"{one.t:.6f} s: the {told} at q {one.q[0]:.6f} {one.q[1]:.6f}\n"
+        for told, some in zip(watched.values(), sol.events, strict=True)
+        for one in some
+    ]
+    return "".join(sorted(found)) + sol.message + "\n"
 
 
 def test_the_library_shares_no_solver_of_eigen_with_a_program() -> None:
     """Both may bring one, for other instruction sets, and the linker keeps one of each name."""
-    library = (Path(pc.__file__).parent / "lib/libpendcore.a").read_bytes()
-    solver = b"11EigenSolver"
-    assert b"14pendcore_eigen" + solver in library
-    assert b"5Eigen" + solver not in library
-
-
-def forces_of_python() -> str:
-    """Return what forces.cpp prints, by the same run in Python."""
-    rod = pc.Link(mass=1.0, length=1.0)
-    effects = [
-        pc.effects.ViscousJoint(joint=1, damping=0.1), pc.effects.Motor(joint=2, constant=0.5)
-    ]  # fmt: skip
-    scene = pc.Scene(links=[rod, rod], gravity=9.81, effects=effects)
-    solution = pc.simulate(
-        scene, q0=[0.8, 1.0], qd0=0, t_span=(0, 5), t_eval=[0.0, 2.5, 5.0],
-        method="dop853", rtol=1e-10, atol=1e-12, ledger=True,
-    )  # fmt: skip
-    energy = solution.energy()
-    rows = zip(
-        solution.t, solution.accelerations(), solution.reactions(), energy.total,
-        energy.ledger.motor, strict=True,
-    )  # fmt: skip
-    return "".join(
-        f"{t:.1f} s: qdd {qdd[0]:8.4f} {qdd[1]:8.4f}, F_01 {forces[0, 0]:8.4f} "
-        f"{forces[0, 1]:8.4f}, T + V {total:9.5f} J, motor {motor:8.5f} J\n"
-        for t, qdd, forces, total, motor in rows
-    )
-
-
-def events_of_python() -> str:
-    """Return what events.cpp prints, by the same run in Python."""
-    turn = pc.events.RateZero(link=1)
-    passage = pc.events.TipLine(point=(0.0, 0.0), normal=(1.0, 0.0), direction=-1, terminal=3)
-    solution = pc.simulate(
-        pc.Scene.textbook(),
-        q0=[0.8, 1.0],
-        qd0=0,
-        t_span=(0, 10),
-        rtol=1e-10,
-        events=[turn, passage],
-    )
-    found = [
-        (one.t, told, *one.q)
-        for told, events in zip(("first link turns", "tip passes"), solution.events, strict=True)
-        for one in events
-    ]
-    rows = [f"{t:.6f} s: the {told} at q {q1:.6f} {q2:.6f}" for t, told, q1, q2 in sorted(found)]
-    return "\n".join([*rows, solution.message, ""])
-
-
-def test_the_page_shows_this_project_and_what_it_prints() -> None:
-    programs = [
-        (PROJECT / f"{name}.cpp").read_text() for name in ("end_angles", "forces", "events")
-    ]
-    assert re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL) == programs
-    for printed in (forces_of_python(), events_of_python()):
-        assert f"```text\n{printed}```" in PAGE
-    lines = (PROJECT / "CMakeLists.txt").read_text().splitlines()
-    for line in (line for line in lines if "end_angles" in line):
-        assert f"\n{line}\n" in PAGE
-    solution = pc.simulate(pc.Scene.textbook(), q0=[np.pi / 4, np.pi / 3], t_span=(0, 5))
-    shown = re.search(r"build/end_angles +# (\S+) (\S+), the bits", PAGE)
-    assert shown
-    assert [float.fromhex(word) for word in shown.groups()] == list(solution.q[-1])
+    library = (INSTALLED / "lib/libpendcore.a").read_bytes()
+    assert b"14pendcore_eigen11EigenSolver" in library
+    assert b"5Eigen11EigenSolver" not in library

@@ -142,7 +142,6 @@ LISTED: dict[str, tuple[str, ...]] = {
     "long energy drift": (
         f"{LONG}::test_over_half_a_million_steps_the_energy_keeps_to_the_methods_own_error",
         f"{LONG}::test_roundings_that_are_carried_on_walk_a_hundred_times_less_far",
-        f"{LONG}::test_the_full_form_kept_what_the_page_promises",
         f"{HARD}::test_energy_drifts_with_the_tolerance_alone",
     ),
     "inputs that are read-only, strided, of the wrong shape or type": (
