@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from fractions import Fraction
 
 import numpy as np
@@ -114,19 +113,6 @@ def test_the_low_part_is_below_the_last_bit():
     sol = pc.simulate(BOOK, (0, 20), [0.8, 1.0], **how)
     y = sol._run.__getstate__()["position_y"]
     assert (np.abs(low_part(sol)) <= 0.5 * np.spacing(np.abs(y))).all()
-
-
-@pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21])
-@pytest.mark.parametrize("ledger", [False, True])
-def test_a_compensated_run_goes_on_as_if_it_had_never_stopped(stop, ledger):
-    scene = pc.Scene(links=BOOK.links, effects=BUSY)
-    how = {"compensated": True, "ledger": ledger, "max_step": 0.01}
-    whole, begun = (pc.simulate(scene, (0, t), [0.8, 1.0], **how) for t in (6, stop))
-    resumed = pickle.loads(pickle.dumps(begun)).resume(6)
-    assert np.array_equal(resumed.t, whole.t)
-    assert np.array_equal(resumed.y, whole.y)
-    assert np.array_equal(low_part(resumed), low_part(whole))
-    assert resumed.case() == whole.case()
 
 
 @pytest.mark.parametrize("ledger", [False, True])

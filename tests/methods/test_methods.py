@@ -149,19 +149,6 @@ def last_slope(errors):
     return -np.diff(np.log2(errors))[-1]
 
 
-def test_a_step_between_the_knots_shows_the_order_of_the_interpolant_itself(of_one_order):
-    # one step of h from an exact state, the reference inside it from a run in steps of h/64
-    local = []
-    for h in (0.04, 0.02, 0.01):
-        how = {"method": of_one_order["name"]}
-        coarse, fine = (
-            pc.simulate(BOOK, (0.0, 1.5 * h), START, [1.0, -0.5], step=step, **how)
-            for step in (h, h / 64)
-        )
-        local.append(np.abs(coarse(BETWEEN * h) - fine(BETWEEN * h)).max())
-    assert last_slope(local) == pytest.approx(of_one_order["interpolant_order"] + 1, abs=0.2)
-
-
 def test_the_slope_of_the_dense_output_has_the_order_of_the_interpolant(of_one_order):
     """Within one step, of the rates and of what the equations say; at its ends there is no error.
 

@@ -36,13 +36,6 @@ def run(effects, t_end, q0=START, **how):
     return pc.simulate(pc.Scene(links=[ROD, ROD], effects=effects), (0, t_end), q0, **how)
 
 
-def assert_same(whole, resumed):
-    assert np.array_equal(whole.t, resumed.t)
-    assert np.array_equal(whole.y, resumed.y)
-    assert whole.stats == resumed.stats
-    assert whole.message == resumed.message
-
-
 # Right ------------------------------------------------------------------------------------------
 
 
@@ -106,17 +99,6 @@ def test_radau5_agrees_with_dopri5(scene):
     )
     assert one.status == other.status
     assert np.abs(one.y[:, -1] - other.y[:, -1]).max() < within
-
-
-def test_the_ledger_of_radau5_changes_no_bit_and_closes():
-    effects = [ViscousJoint(joint=1, damping=0.5), Motor(joint=2, constant=1.0)]
-    without, kept = (
-        run(effects, 5, method="radau5", rtol=1e-9, ledger=ledger) for ledger in (False, True)
-    )
-    assert np.array_equal(without.y, kept.y)
-    energy = kept.energy()
-    work = energy.ledger.motor - energy.ledger.viscous
-    assert np.abs(energy.total - energy.total[0] - work).max() < 1e-7
 
 
 def test_no_fixed_step_that_was_not_solved_is_taken():
@@ -257,19 +239,14 @@ def test_a_pair_changes_over_once_and_says_when(pair, effects, q0):
 
 @pytest.mark.parametrize("method", IMPLICIT)
 @pytest.mark.parametrize("compensated", [False, True])
-@pytest.mark.parametrize("stop", [1e-3, 0.7])
-def test_a_stiff_run_goes_on_bit_by_bit(method, stop, compensated):
-    how = {"method": method, "rtol": 1e-6, "compensated": compensated}
-    whole, begun = (run("damper", t_end, **how) for t_end in (2, stop))
-    resumed, times = pickle.loads(pickle.dumps(begun)).resume(2), np.linspace(0, 2, 99)
-    assert_same(whole, resumed)
-    assert np.array_equal(whole(times), resumed(times))
-
-
-@pytest.mark.parametrize("method", IMPLICIT)
 @pytest.mark.parametrize("cap", [1, 10, 108, 114])  # stiffness: tested about step 100
-def test_a_run_stopped_by_its_cap_goes_on_bit_by_bit(method, cap):
-    how = {"method": method, "rtol": 1e-9}
+def test_a_run_stopped_by_its_cap_goes_on_bit_by_bit(method, cap, compensated):
+    how = {"method": method, "rtol": 1e-9, "compensated": compensated}
     stopped = run("controller", 2, [0.8, 1.1], max_steps=cap, on_failure="ignore", **how)
     assert stopped.status == "max_steps"
-    assert_same(run("controller", 2, [0.8, 1.1], **how), stopped.resume(2))
+    resumed = pickle.loads(pickle.dumps(stopped)).resume(2)
+    whole, times = run("controller", 2, [0.8, 1.1], **how), np.linspace(0, 2, 99)
+    assert np.array_equal(whole.t, resumed.t)
+    assert np.array_equal(whole.y, resumed.y)
+    assert np.array_equal(whole(times), resumed(times))
+    assert (whole.stats, whole.message) == (resumed.stats, resumed.message)

@@ -136,6 +136,29 @@ def test_chains_of_many_contacts_get_to_their_end_within_their_stops(seeds, meth
         assert_its_ledger_closes(runs[-1], how["rtol"])
 
 
+@pytest.mark.parametrize("step", [None, 0.003, 1 / 64])
+@pytest.mark.parametrize("block", range(4))
+def test_laws_that_meet_lead_on(method, step, block):
+    """Laws of every kind that has sides, in any order.
+
+    Whatever a coarse step says of its start, a shorter one has to confirm it.
+    """
+    ways = {"rtol": 1e-8} if step is None else {"step": step}
+    how = {"method": method, "max_steps": 100_000, "on_failure": "ignore", **ways}
+    for seed in range(10 * block, 10 * block + 10):
+        scene, q0, qd0 = drawn(seed)
+        random, effects = np.random.default_rng(seed), list(scene.effects)
+        for j in range(1, len(scene.links) + 1):
+            kp, kd, at, limit = random.uniform([0, 0, -1, 0.2], [50, 5, 1, 5])
+            servo = fx.Motor(joint=j, pd=fx.PD(kp=kp, kd=kd, reference=at), limit=limit)
+            second = fx.DryJointFriction(joint=j, coulomb=random.uniform(0, 2))
+            effects += [law for law in (servo, second) if random.random() < 0.3]
+        random.shuffle(effects)
+        sol = pc.simulate(scene.replace(effects=effects), (0, 3), q0, qd0, **how)
+        may_fail = method == "radau5" and step is not None  # in so long a step
+        assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
+
+
 @pytest.mark.parametrize("seed", [392, 1656, 6741])
 def test_chains_of_many_contacts_that_went_back_and_forth_get_to_their_end(seed, method):
     scene, q0, qd0 = drawn(seed)

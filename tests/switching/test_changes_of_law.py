@@ -253,16 +253,3 @@ def test_joints_that_all_reverse_at_once_retrace_their_way(links):
     assert_sound(thrown, (0, 2))
     np.testing.assert_allclose(thrown(1)[:links], fallen.q[0], atol=1e-8)
     np.testing.assert_allclose(thrown.y[:, -1], fallen.y[:, -1], atol=1e-7)
-
-
-def test_a_run_across_knots_limits_and_reversals_goes_on_bitwise_from_anywhere():
-    wave = fx.Motor(joint=1, sinusoid=fx.Sinusoid(2.0, angular_frequency=5.0), limit=1.0)
-    damping = fx.ViscousJoint(joint=1, damping=0.1, damping2=0.3)
-    table = by_table([0, 0.5, 1, 2, 3], [-1, 2, -2, 1, 1])
-    scene = rod(table, wave, damping, gravity=9.81)
-    whole = solve(scene, 0.3, 0, 3)
-    assert_sound(whole, (0, 3))
-    for t_end in [*np.random.default_rng(11).uniform(0, 3, 50), *whole.t[1:-1]]:
-        on = solve(scene, 0.3, 0, t_end).resume(3, max_steps=10_000)
-        np.testing.assert_array_equal(on.t, whole.t)
-        np.testing.assert_array_equal(on.y, whole.y)

@@ -26,49 +26,6 @@ def test_friction_stops_a_rod_with_quadratic_damping(method, ways, order):
     assert sol.y[1, -1] == 0.0
 
 
-def drawn_chain(random):
-    """Up to four links with laws of every kind that has sides, in any order."""
-    n = int(random.integers(1, 5))
-    phi = random.uniform(-1, 1, n)
-    effects = []
-
-    def add(chance, effect):
-        if random.random() < chance:
-            effects.append(effect)
-
-    for j in range(1, n + 1):
-        low, high, limit, kp, kd, at, amplitude, omega = random.uniform(
-            [0, 0.05, 0.2, 0, 0, -1, 0, 0.5], [1, 1, 5, 50, 5, 1, 4, 8]
-        )
-        coulomb, other = random.uniform(0, 2, 2)
-        how = {"coulomb": coulomb, "static": 1.5 * coulomb, "stribeck_velocity": 0.1}
-        add(0.6, fx.DryJointFriction(joint=j, **how))
-        add(0.3, fx.DryJointFriction(joint=j, coulomb=other))
-        bounds = (phi[j - 1] - low * random.integers(2), phi[j - 1] + high)
-        add(0.6, fx.JointStop(joint=j, range=bounds, restitution=random.choice([0, 0.3, 0.9])))
-        add(0.3, fx.Motor(joint=j, sinusoid=fx.Sinusoid(amplitude, angular_frequency=omega)))
-        add(0.3, fx.Motor(joint=j, pd=fx.PD(kp=kp, kd=kd, reference=at), limit=limit))
-        add(0.3, fx.ViscousJoint(joint=j, damping=0.1, damping2=0.1))
-    add(0.3, fx.DrivenPivot(x=fx.Sinusoid(0.1, angular_frequency=random.uniform(1, 9))))
-    random.shuffle(effects)
-    rods = [pc.Link(mass=m, length=le) for m, le in random.uniform(0.3, 2, (n, 2))]
-    rates = np.cumsum(random.integers(2) * random.uniform(-3, 3, n))
-    return pc.Scene(links=rods, effects=effects), np.cumsum(phi), rates
-
-
-@pytest.mark.parametrize("step", [None, 0.003, 1 / 64])
-@pytest.mark.parametrize("block", range(4))
-def test_laws_that_meet_lead_on(method, step, block):
-    """Whatever a coarse step says of its start, a shorter one has to confirm it."""
-    ways = {"rtol": 1e-8} if step is None else {"step": step}
-    how = {"method": method, "max_steps": 100_000, "on_failure": "ignore", **ways}
-    for seed in range(10 * block, 10 * block + 10):
-        scene, q0, qd0 = drawn_chain(np.random.default_rng(seed))
-        sol = pc.simulate(scene, (0, 3), q0, qd0, **how)
-        may_fail = method == "radau5" and step is not None  # in so long a step
-        assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
-
-
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8])
 @pytest.mark.parametrize("start", [0.3, 7.0, 13.7, 1e4])
 def test_two_joints_are_let_go_at_one_time(method, rtol, start):

@@ -117,7 +117,7 @@ LISTED: dict[str, tuple[str, ...]] = {
     ),
     "laws that change at one time, in steps too coarse to tell": (
         f"{AT_ONCE}::test_friction_stops_a_rod_with_quadratic_damping",
-        f"{AT_ONCE}::test_laws_that_meet_lead_on",
+        f"{CHAINS}::test_laws_that_meet_lead_on",
     ),
     "spans of a few units in the last place, time scales from 1e-100 s to 1e100 s": (
         f"{HARD}::test_a_span_of_a_few_units_in_the_last_place_ends_where_it_should",
@@ -129,7 +129,7 @@ LISTED: dict[str, tuple[str, ...]] = {
     "two event roots in one step; an event at t0, at t_end, at a step's end": (
         f"{EVENTS}::test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing",
         f"{EVENTS}::test_a_mark_at_the_start_is_no_event_and_one_at_the_end_is_one",
-        f"{EVENTS}::test_a_mark_at_the_end_of_a_step_is_met_once",
+        f"{EVENTS}::test_roots_in_one_step_or_at_its_ends_are_found_once_each",
     ),
     "a chain of 1000 links": (f"{FORCES}::test_a_chain_of_a_thousand_links_keeps_its_energy",),
     "swings next to the separatrix": (
