@@ -179,26 +179,6 @@ def test_a_jump_over_more_turns_than_an_int_holds_ends_the_run_in_words():
 # Backward ---------------------------------------------------------------------------------------
 
 
-def test_elastic_impacts_are_events_on_the_way_back_too(fine):
-    """From the top to the stop after T = sqrt 0.4, 3 T, 5 T, ...
-
-    The rod passes 0.3 when T/2 from its highest points, which come at 2 T, 4 T, ...
-    """
-    watched = [ev.JointAngle(joint=1, value=0.0), ev.RateZero(joint=1), ev.JointAngle(1, 0.3)]
-    sol = pc.simulate(dropped(1.0), (0, -6.2), 0.4, events=watched, **fine)
-    touches, zeros, passed = sol.events
-    assert times(touches) == pytest.approx(-FALL * np.arange(1, 10, 2), abs=1e-10)
-    assert times(zeros) == pytest.approx(-FALL * np.arange(1, 10), abs=1e-10)
-    assert times(passed) == pytest.approx(-FALL * np.arange(0.5, 10), abs=1e-10)
-    for one in [*touches, *zeros[::2]]:
-        assert one.direction == -1  # along the run angle and rate fall, the rate from + to -
-        np.testing.assert_allclose(one.y_before, [0, SPEED], atol=1e-9)
-        np.testing.assert_allclose(one.y_after, [0, -SPEED], atol=1e-9)
-    for one in zeros[1::2]:
-        assert (one.direction, one.y_before, one.y_after) == (1, None, None)
-    assert [one.direction for one in passed] == [-1, 1] * 5
-
-
 def test_what_elastic_impacts_of_a_chain_are_found_backward_is_found_of_its_mirror(fine):
     stops = [fx.JointStop(joint=j, range=(-0.4, 0.3), restitution=1.0) for j in (2, 3)]
     scene = rod(*stops, links=3, gravity=9.81)

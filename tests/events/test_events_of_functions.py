@@ -25,16 +25,6 @@ def times(found):
     return [one.t for one in found]
 
 
-def test_a_function_finds_what_the_kinds_of_the_core_find():
-    kinds = [ev.LinkAngle(2, 1.5), ev.RateZero(joint=2), ev.TipLine((0, 1.7), (0, 1))]
-    laws = (lambda t, q, qd: q[1] - 1.5), (lambda t, q, qd: qd[1] - qd[0]), height
-    sol = run(*kinds, *map(ev.Function, laws))
-    for k, f in zip(sol.events[:3], sol.events[3:], strict=True):
-        assert times(k) == pytest.approx(times(f), abs=1e-14)
-        assert [one.direction for one in k] == [one.direction for one in f]
-    assert sum(map(len, sol.events)) > 12
-
-
 def test_a_function_sees_states_of_the_run_in_arrays_of_its_own():
     seen = []
 

@@ -58,33 +58,19 @@ def test_no_step_however_long_jumps_over_where_a_sinusoid_is_clipped(rtol, span)
     """Where it is clipped a step of any length has no error, so that nothing but edges ends it.
 
     On a sine, each step may err by rtol of the state, which is below 10, and two half periods err
-    in opposite directions.
+    in opposite directions. A million sin(7 t) clipped to +-1 is a square wave.
     """
-    random = np.random.default_rng(7)
-    for _ in range(60):
-        amplitude, frequency = 10 ** random.uniform(0.01, 2), 10 ** random.uniform(0.5, 2.5)
-        phase = random.uniform(-3, 3)
+    drawn = np.random.default_rng(7).uniform([0.01, 0.5, -3], [2, 2.5, 3], (60, 3))
+    waves = [(10**amplitude, 10**frequency, phase) for amplitude, frequency, phase in drawn]
+    for amplitude, frequency, phase in [*waves, (1e6, 7.0, 0.0)]:
         how = {"rtol": rtol, "first_step": 0.45, "max_steps": 100_000}
         sol = pc.simulate(rod(clipped(amplitude, frequency, phase)), span, 0, **how)
         assert sol.status == "finished"
         first, last = impulse(frequency * np.array(span) + phase, amplitude) / frequency
-        assert abs(sol.qd[-1, 0] - (last - first)) < 10 * rtol
+        within = 10 * rtol if amplitude < 1e6 else 1e-6  # of a constant torque there is no error
+        assert abs(sol.qd[-1, 0] - (last - first)) < within
         for edge in edges(amplitude, frequency, phase, 10.0):
             assert np.abs(sol.t - edge).min() < 1e-10
-
-
-@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
-def test_a_torque_that_is_nearly_always_at_its_limit_gives_triangles(rtol):
-    """A million sin(7 t) clipped to +-1 is a square wave, of half period T = pi/7.
-
-    The rate is a triangle from 0 to T and the angle grows by T^2/2 in each half period; what is
-    lost while the torque rises, twice 1e-6/7 s, is below the tolerance.
-    """
-    half = np.pi / 7
-    how = {"rtol": rtol, "first_step": 0.45, "max_steps": 10_000}
-    sol = pc.simulate(rod(clipped(1e6, 7.0)), (0, 20 * half), 0, **how)
-    np.testing.assert_allclose(sol(half * np.arange(21))[1], half * (np.arange(21) % 2), atol=1e-6)
-    assert sol.q[-1, 0] == pytest.approx(20 * half**2 / 2, rel=1e-5)
     assert sol.stats.accepted < 400
 
 
