@@ -236,15 +236,6 @@ def test_a_rod_swings_with_the_period_of_elliptic_integrals(sign, fine):
     assert len(set(directions(through)[::2])) == len(set(directions(through)[1::2])) == 1
 
 
-def test_a_mode_of_small_oscillations_passes_the_vertical_at_its_frequency():
-    frequency = np.sqrt((3 - 6 / np.sqrt(7)) * 9.807)
-    start = np.pi / 2 + 1e-6 * np.array([1.0, 3 / (3 - 6 / np.sqrt(7)) - 8 / 3])
-    events = [ev.LinkAngle(i, np.pi / 2) for i in (1, 2)]
-    for found in pc.simulate(BOOK, (0, 20), start, rtol=1e-12, atol=1e-18, events=events).events:
-        exact = (np.arange(int(20 * frequency / np.pi + 0.5)) + 0.5) * np.pi / frequency
-        assert times(found) == pytest.approx(exact, abs=1e-8)
-
-
 @pytest.mark.parametrize("name", ["textbook", "textbook_long", "unequal", "three_links"])
 def test_sections_are_where_the_multiple_precision_references_are(name, reference_case):
     """The run passes the angle that the reference has at a time, at that time."""

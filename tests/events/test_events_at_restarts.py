@@ -82,9 +82,6 @@ def test_members_find_the_events_of_the_run_alone_from_an_event(kind):
         assert np.array_equal(many["first_event"][0], first, equal_nan=True)
 
 
-# A torque that changes its sign at each event ---------------------------------------------------
-
-
 def pushed(u):
     return rod(fx.Motor(1, constant=u))
 
@@ -124,8 +121,6 @@ def test_a_bang_bang_loop_switches_as_often_as_its_exact_answer(loop, method, se
         times.append(t)
     assert times == pytest.approx(sense * exact, abs=within)
 
-
-# Close to the start -----------------------------------------------------------------------------
 
 CLOSE = [1e-3, 1e-6, 1e-9, 1e-12]
 

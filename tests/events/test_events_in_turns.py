@@ -66,8 +66,6 @@ def test_a_step_of_more_turns_than_numbers_ends_the_run():
     assert (sol.status, sol.t[-1], sol.events) == ("max_turns", 0.0, [[]])
 
 
-# The tip ----------------------------------------------------------------------------------------
-
 SWAY = fx.DrivenPivot(
     x=fx.Sinusoid(amplitude=0.3, angular_frequency=5.0),
     y=fx.Sinusoid(amplitude=0.1, angular_frequency=11.0, phase=1.0),

@@ -164,16 +164,6 @@ def test_one_time_asked_for_is_one_state_wherever_it_lies(method):
         np.testing.assert_array_equal(sol.y[:, 0], whole(t))
 
 
-def test_there_and_back_is_where_it_began(method):
-    tolerance = 1e-12 if METHODS[method]["order"] >= 3 else 1e-9
-    how = {"method": method, "rtol": tolerance, "atol": tolerance / 10, "store": "end"}
-    there = pc.simulate(BOOK, (0, 10), START, **how)
-    back = pc.simulate(BOOK, (10, 0), there.q[-1], there.qd[-1], **how)
-    assert there.success
-    assert back.success
-    assert np.abs(back.y[:, -1] - [*START, 0, 0]).max() < 1e3 * tolerance
-
-
 # Starts -----------------------------------------------------------------------------------------
 
 NEARLY_UPRIGHT = -np.pi / 2 + 1e-9

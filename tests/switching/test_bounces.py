@@ -100,9 +100,6 @@ def test_a_captured_rod_without_a_torque_leans_on_its_stop_for_good(fine):
     assert sol.y[:, -1].tolist() == [0.7, 0.0]
 
 
-# Elastic ----------------------------------------------------------------------------------------
-
-
 def test_elastic_bounces_keep_the_energy_and_their_beat(fine):
     """A thousand of 2 w_1/torque each."""
     torque, bounces = 2.0, 1000

@@ -12,8 +12,6 @@ from dense_chain import joints
 from driven_chains import FREE, DrivenChain, Motor, assert_follows_mode_by_mode, mode_by_mode
 from pendcore import effects as fx
 
-# Mode by mode -----------------------------------------------------------------------------------
-
 SLOW = {"h": 0.06, "t_end": 3.0}
 RUNS = {
     "slow": DrivenChain(friction=(5.0, 1.5), motor=Motor(1, 10.0, 1.0), t_end=6.2),
@@ -60,9 +58,6 @@ def leans_and_leaves(chain, switch, after):
     touches = mode_by_mode(chain).exact.gaps(y).min(axis=1) < 1e-9
     let_go = touches & (np.array(mode) == 0) & (np.array(after[2]) != 0)
     return let_go.any() and after[0] - begin > 0.1
-
-
-# Drawn ------------------------------------------------------------------------------------------
 
 
 def drawn(seed):

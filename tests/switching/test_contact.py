@@ -73,9 +73,6 @@ def test_a_stop_that_is_never_reached_changes_no_bit(links, method):
     np.testing.assert_array_equal(never(times), free(times))
 
 
-# Grazing ----------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("miss", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 def test_a_grazing_stop_is_hit_if_and_only_if_the_swing_reaches_it(e, miss, fine):
@@ -127,9 +124,6 @@ def test_a_joint_of_a_chain_grazes_its_stop_if_and_only_if_its_swing_reaches_it(
     assert after == pytest.approx(-e * before, rel=1e-12)
     assert top.t - short.t[struck] == pytest.approx(speed / -turning[1], rel=5e-3)
     assert (short.q[:, 1] - short.q[:, 0]).max() <= angle - miss + 1e-15
-
-
-# Friction and damping ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("e", [0.0, 0.6, 1.0])

@@ -68,8 +68,6 @@ def test_what_the_motor_gives_is_what_friction_takes(fine):
         assert booked[-1] == pytest.approx(HUMS["a staircase"]["friction"] * path, rel=1e-10)
 
 
-# Towed by a spring ------------------------------------------------------------------------------
-
 STIFFNESS = 4.0
 
 

@@ -20,9 +20,6 @@ from unit_rods import rod
 FORTY = multiple_precision(40)
 
 
-# A sinusoid that is clipped ---------------------------------------------------------------------
-
-
 def impulse(angle, amplitude):
     """Integrate amplitude sin(x), clipped to +-1, from x = 0 to an angle, in closed form.
 
@@ -74,8 +71,6 @@ def test_no_step_however_long_jumps_over_where_a_sinusoid_is_clipped(rtol, span)
     assert sol.stats.accepted < 400
 
 
-# Steps of one size ------------------------------------------------------------------------------
-
 KNOTS = np.cumsum([0.0, *np.random.default_rng(8).uniform(0.003, 0.03, 1500)])
 CHANGING = {
     "knots": [fx.Motor(joint=1, table=fx.Table(t=KNOTS, torque=np.sin(KNOTS)))],
@@ -111,8 +106,6 @@ def test_a_table_of_many_points_takes_one_step_each():
     assert sol.stats.accepted <= len(t) + 20  # the first, short ones
     assert sol.stats.nfev <= 8 * len(t)
 
-
-# Views at such times ----------------------------------------------------------------------------
 
 SPLINE = {"x": [0.0, 0.1, -0.2, 0.1, 0.1], "y": [0.1, 0.0, 0.2, -0.1, 0.3]}
 

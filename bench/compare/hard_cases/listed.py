@@ -36,7 +36,7 @@ LISTED: dict[str, tuple[str, ...]] = {
     "backward is the mirror of forward; there and back": (
         "tests/core/test_symmetries.py::"
         "test_without_losses_the_past_is_the_future_of_the_reversed_start",
-        f"{HARD}::test_there_and_back_is_where_it_began",
+        "tests/core/test_symmetries.py::test_there_and_back_is_where_it_began",
     ),
     "at rest in both equilibria; upright, with the time of the fall": (
         "tests/core/test_exact_answers.py::test_hanging_at_rest_it_stays",
