@@ -6,7 +6,7 @@ Series of taylor, right-hand sides in the correction of their error and right-ha
 are timed in turns on the same scene, with every effect. The ratios of the times are divided by what
 `series_work` and `correction_work` of `pendcore._accuracy.method_choice` say. The program prints
 the results, and fails if one of them is not within a factor of two. No test measures times;
-tests/methods/test_series_work.py sees that every kind of effect is measured here.
+tests/methods/test_taylor.py sees that every kind of effect is measured here.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Cases that break simulators, each with its right answer from theory."""
+"""Numbers and times that break simulators, each with its right answer from theory."""
 
 from __future__ import annotations
 
@@ -17,60 +17,160 @@ from dense_chain import DenseChain
 from hybrid_chain import extrapolated_step
 from mpmath import ellipf, ellipk, mp, mpf
 from pendcore import _core
+from pendcore import effects as fx
+from pendcore import events as ev
+from unit_rods import rod
 
 BOOK = pc.Scene.textbook()
-ROD = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
-NEARLY_UPRIGHT = -np.pi / 2 + 1e-9
+ROD = BOOK.replace(links=BOOK.links[:1])
 FLOATING = pc.Scene(links=BOOK.links, gravity=0.0)
-ORDERS = {m["name"]: m["order"] for m in _core.methods() if m["error_order"]}
-METHODS = list(ORDERS)
-FIRST = {method["name"]: method["first"] for method in _core.methods()}
+METHODS = {m["name"]: m for m in _core.methods()}
+START = [0.8, 1.0]
 
 
-def total_energy(sol: pc.Solution) -> np.ndarray:
-    return sol.energy().total
+def at_time(at, **how):
+    return ev.Function(lambda t, q, qd: t - at, **how)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_a_hundred_units_in_the_last_place_are_one_step(method):
-    t_end = 1 + 100 * np.finfo(float).eps
-    sol = pc.simulate(BOOK, q0=0.3, t_span=(1.0, t_end), method=method)
-    assert sol.success
-    assert sol.t.tolist() == [1.0, t_end]
+# Times ------------------------------------------------------------------------------------------
 
 
-def test_a_time_too_large_for_its_step_is_said_plainly():
-    sol = pc.simulate(BOOK, q0=0.3, t_span=(1e17, 1e17 + 1000), on_failure="ignore")
-    assert sol.status == "step_too_small"
-    assert not sol.success
-    assert "t + h = t" in sol.message
-    assert sol.t.tolist() == [1e17]
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 100, 1000])
+@pytest.mark.parametrize("t0", [1.0, -1e6])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_span_of_a_few_units_in_the_last_place_ends_where_it_should(sign, t0, count, method):
+    """What happens in it has its time to the last bit; rates are a unit of angle in one of time."""
+    unit = sign * np.spacing(abs(t0))
+    rate = np.spacing(0.3) / abs(unit)
+    ticks = sorted({1, (count + 1) // 2, count})
+    how = {"method": method, "events": [at_time(t0 + k * unit) for k in ticks]}
+    sol = pc.simulate(rod(links=2), (t0, t0 + count * unit), 0.3, [rate, -rate], **how)
+    assert sol.status == "finished", sol.message
+    assert sol.t.tolist() == [t0, t0 + count * unit]
+    assert [[(one.t - t0) / unit for one in found] for found in sol.events] == [[k] for k in ticks]
+    moved = (sol.q[-1] - 0.3) / np.spacing(0.3)
+    np.testing.assert_allclose(moved, [sign * count, -sign * count], atol=1)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_backward_is_the_mirror_of_forward(method):
-    forward = pc.simulate(BOOK, q0=[0.3, 1.1], qd0=[2.0, -1.0], t_span=(0, 10), method=method)
-    backward = pc.simulate(BOOK, q0=[0.3, 1.1], qd0=[-2.0, 1.0], t_span=(0, -10), method=method)
-    assert np.array_equal(backward.t, -forward.t)
-    assert np.array_equal(backward.q, forward.q)
-    assert np.array_equal(backward.qd, -forward.qd)
-    times = np.linspace(0, 10, 33)
-    assert np.array_equal(backward(-times)[:2], forward(times)[:2])
+@pytest.mark.parametrize("way", ["step", "max_step", "first_step"])
+def test_steps_of_a_few_units_in_the_last_place_are_refused_with_the_reason(way, method):
+    unit = np.spacing(1.0)
+    how = {"method": method, "on_failure": "ignore", way: 4.7 * unit}
+    short = pc.simulate(BOOK, (1.0, 1 + 100 * unit), 0.3, 1, **how)
+    assert short.status == "step_too_small"
+    assert "t + h = t" in short.message
+    assert "t = 1.0 s" in short.message
+    assert short.t.tolist() == [1.0]
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_there_and_back_is_where_it_began(method):
-    tolerance = 1e-12 if ORDERS[method] >= 3 else 1e-9
-    how = {"method": method, "rtol": tolerance, "atol": tolerance / 10, "store": "end"}
-    there = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 10), **how)
-    back = pc.simulate(BOOK, q0=there.q[-1], qd0=there.qd[-1], t_span=(10, 0), **how)
-    assert there.success
-    assert back.success
-    assert np.abs(back.y[:, -1] - [0.8, 1.0, 0, 0]).max() < 1e3 * tolerance
+def test_an_event_ends_a_span_of_a_few_units_in_the_last_place(method):
+    unit = np.spacing(1.0)
+    end, events = 1 + 100 * unit, [at_time(1 + 30 * unit, terminal=True)]
+    sol = pc.simulate(BOOK, (1.0, end), 0.3, 1, method=method, events=events)
+    assert sol.status == "event"
+    assert sol.t.tolist() == [1.0, 1 + 30 * unit]
+    longer = sol.resume(end)
+    assert longer.status == "finished"
+    assert longer.t.tolist() == [1.0, end]
+
+
+@pytest.mark.parametrize("t0", [1e16, -1e16, 1e17, 1e18])
+@pytest.mark.parametrize("count", [1, 2, 5, 62])
+def test_where_time_is_coarser_than_the_motion_no_step_is_taken(count, t0, method):
+    span = (t0, t0 + count * np.spacing(abs(t0)))  # units of 2 s, of 16 s, and of 128 s
+    fast = pc.simulate(BOOK, span, [-1.2, -0.6], method=method, on_failure="ignore")
+    assert fast.status == "step_too_small"
+    assert "t + h = t" in fast.message
+    assert fast.t.tolist() == [t0]
+    assert fast.stats.nfev < 1000
+    if count > 2:
+        return  # more than the first step of any motion can be: it is not known to be slow
+    slow_book = pc.Scene(links=BOOK.links, gravity=1e-12)  # turns in some weeks
+    slow, alike = (
+        pc.simulate(slow_book, times, [-1.2, -0.6], method=method)
+        for times in (span, (0, span[1] - t0))
+    )
+    assert slow.status == "finished"
+    np.testing.assert_allclose(slow.y[:, -1], alike.y[:, -1], rtol=1e-8)
+
+
+def test_a_span_that_no_double_holds_is_refused():
+    with pytest.raises(ValueError, match=r"^end of the run = .*: must be less than 1.8e308 s from"):
+        pc.simulate(BOOK, (-1.7e308, 1.7e308), 0.3)
+
+
+@pytest.mark.parametrize("w", [1e20, 1e-20, 1e100, 1e-100])
+def test_an_oscillation_of_any_frequency_is_followed_over_ten_radians(w, method):
+    """A spring of stiffness w^2 on a moment of inertia of 1: cos(w t) / 2, from 0 to 10 / w."""
+    scene, turns = rod(fx.TorsionalSpring(joint=1, stiffness=w**2)), ev.RateZero(joint=1)
+    how = {"method": method, "rtol": 1e-10, "atol": [1e-12, 1e-12 * w], "events": [turns]}
+    sol = pc.simulate(scene, (0, 10 / w), 0.5, **how)
+    assert sol.status == "finished"
+    assert 1e-10 ** (-1 / METHODS[method]["order"]) < sol.stats.accepted < 1000
+    wt = np.linspace(0, 10, 50)
+    q, qd = sol(wt / w)
+    np.testing.assert_allclose(q, np.cos(wt) / 2, atol=1e-9)
+    np.testing.assert_allclose(qd / w, -np.sin(wt) / 2, atol=1e-9)
+    assert [one.t * w for one in sol.events[0]] == pytest.approx(np.pi * np.arange(1, 4), rel=1e-9)
+
+
+@pytest.mark.parametrize("n", [7, 9, 12, 49, 103])
+@pytest.mark.parametrize("t0", [0.0, 1.0, 1e5])
+def test_a_max_step_that_divides_the_interval_ends_it_once(n, t0):
+    how = {"method": "dopri5", "max_step": 1 / n, "first_step": 1 / n, "rtol": 1e-2, "atol": 1e-2}
+    sol, whole = (pc.simulate(BOOK, (t0, t0 + k), [0.1, 0.2], **how) for k in (1, 2))
+    assert (np.diff(sol.t) > 0.5 / n).all()
+    assert np.array_equal(sol.resume(t0 + 2).t, whole.t)
+
+
+def test_dense_output_far_from_time_zero_is_as_good_as_near_it():
+    near, far = (pc.simulate(BOOK, (t, t + 5), START) for t in (0, 2.0**30))
+    times = np.arange(0, 5, 1 / 64)  # exact in both
+    assert np.abs(far(2.0**30 + times) - near(times)).max() < 1e-12
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("store", ["times", "dense"])
+def test_an_event_leaves_the_times_asked_for_up_to_its_own(store, sign, method):
+    """None before the first of them; the state at its own time is that of the event."""
+    end = at_time(sign * 0.25, samples=1, terminal=True)
+    just_after = np.nextafter(sign * 0.25, sign)
+    for times in ([0.5, 0.75, 1.0], [0.0, 0.25, sign * just_after, 1.0]):
+        times, how = [sign * t for t in times], {"method": method, "store": store}
+        sol, whole = (
+            pc.simulate(BOOK, (0.0, sign), 0.3, 1, t_eval=times, events=events, **how)
+            for events in ([end], [])
+        )
+        assert sol.status == "event"
+        kept = 2 if times[0] == 0 else 0
+        assert sol.t.tolist() == times[:kept]
+        assert sol.y.shape == (4, kept)
+        assert sol.q.shape == (kept, 2)
+        (found,) = sol.events[0]
+        assert found.t == sign * 0.25
+        if kept:
+            np.testing.assert_array_equal(sol.y.T, [[0.3, 0.3, 1, 1], found.y])
+        longer = sol.resume(sign)
+        assert longer.status == "finished"
+        np.testing.assert_array_equal(longer.t, times)
+        np.testing.assert_array_equal(longer.y, whole.y)
+
+
+def test_one_time_asked_for_is_one_state_wherever_it_lies(method):
+    whole = pc.simulate(BOOK, (0, 1), 0.3, 1, method=method, store="dense")
+    for t in (0.0, 5e-324, 1e-9, whole.t[1], np.nextafter(1.0, 0), 1.0):
+        sol = pc.simulate(BOOK, (0, 1), 0.3, 1, method=method, t_eval=[t])
+        assert sol.t.tolist() == [t]
+        np.testing.assert_array_equal(sol.y[:, 0], whole(t))
+
+
+# Starts -----------------------------------------------------------------------------------------
+
+NEARLY_UPRIGHT = -np.pi / 2 + 1e-9
 
 
 @functools.cache
-def time_of_fall(links: int) -> float:
+def time_of_fall(links):
     """When rods that stand 1e-9 rad off upright, to the last digit of that start, are 1 rad off.
 
     One by elliptic integrals; two in angles from upright, where nothing is lost by rounding.
@@ -83,7 +183,7 @@ def time_of_fall(links: int) -> float:
             return float(to_go * mp.sqrt(2 / (3 * mpf(BOOK.gravity))))
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=BOOK.gravity)
 
-    def rates(_: float, y: np.ndarray) -> np.ndarray:
+    def rates(_, y):
         x, xd = np.split(y, 2)
         spun = (chain.couplings * np.sin(x[:, None] - x)) @ xd**2
         falls = chain.moments * chain.gravity * np.sin(x)
@@ -100,113 +200,48 @@ def time_of_fall(links: int) -> float:
 
 
 @pytest.mark.parametrize("links", [1, 2])
-@pytest.mark.parametrize("method", METHODS)
 def test_upright_falls_when_theory_says(method, links):
     # a bit of the start, 2e-16 rad, is 2e-7 of what grows by e^7.2 a second: less than 1e-7 s
-    scene = BOOK.replace(links=BOOK.links[:links])
     fallen = [
-        pc.events.LinkAngle(link, NEARLY_UPRIGHT + side, terminal=True)
-        for link in range(1, links + 1)
-        for side in (1, -1)
-    ]
+        ev.LinkAngle(link, NEARLY_UPRIGHT + side, terminal=True)
+        for link in range(1, links + 1) for side in (1, -1)
+    ]  # fmt: skip
     how = {"method": method, "rtol": 1e-13, "atol": 1e-16, "events": fallen}
-    sol = pc.simulate(scene, q0=NEARLY_UPRIGHT, t_span=(0, 8), **how)
+    sol = pc.simulate(BOOK.replace(links=BOOK.links[:links]), (0, 8), NEARLY_UPRIGHT, **how)
     assert sol.status == "event"
     # radau5 is a few of its tolerances off in the first second; of dop853's steps of 0.03 s each
     # carries 7.2 * 0.03 * 13 such bits of the rounding of its stages, 13 the sum of abs(b)
-    within = {"radau5": 1e-6, "dop853": 5e-7}.get(FIRST[method], 1e-7)
+    within = {"radau5": 1e-6, "dop853": 5e-7}.get(METHODS[method]["first"], 1e-7)
     assert sol.t[-1] == pytest.approx(time_of_fall(links), abs=within)
 
 
-@pytest.mark.parametrize("method", METHODS)
 def test_all_links_horizontal_at_rest_begins_to_fall_at_once(method):
-    sol = pc.simulate(BOOK, q0=0, t_span=(0, 1e-3), method=method)
+    sol = pc.simulate(BOOK, (0, 1e-3), 0, method=method)
     expected = 0.5 * 1e-6 * np.array([9, -3]) / 7 * BOOK.gravity
     assert sol.q[-1] == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_absurd_tolerances_end_in_a_solution(method):
-    how = {"method": method, "atol": 1e-20}
-    least = 10 * np.finfo(float).eps
-    fine, finest, too_fine = (
-        pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 0.1), rtol=rtol, **how)
-        for rtol in (1e-13, least, 1e-20)
-    )
-    # a component may be twice the root mean square of four
-    np.testing.assert_allclose(too_fine.y[:, -1], fine.y[:, -1], rtol=0, atol=2e-13)
-    assert np.array_equal(too_fine.y, finest.y)  # doubles resolve no more
-    more_steps = (1e-13 / least) ** (1 / ORDERS[method])
-    assert too_fine.stats.accepted > 0.7 * more_steps * fine.stats.accepted
-
-
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("tolerance", [1e300, 1e30, 1e3])
-def test_tolerances_beyond_measure_end_as_the_status_says(tolerance, method):
-    """At the end or wherever the steps lead to; a tenth of a second is a single step."""
-    how = {"method": method, "rtol": tolerance, "atol": tolerance}
-    assert pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 0.1), **how).success
-    sol = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5), on_failure="ignore", **how)
-    assert sol.status in {"finished", "step_too_small", "non_finite"}
-    assert sol.success == (sol.t[-1] == 5)
-    assert np.isfinite(sol.y).all()
-    assert sol.stats.accepted < 100
-
-
-@pytest.mark.parametrize("step", [None, 10.0])
-@pytest.mark.parametrize("method", METHODS)
-def test_no_absolute_tolerance_with_components_that_stay_zero(method, step):
-    floating = pc.Scene(links=ROD.links, gravity=0.0)
-    still = pc.simulate(floating, q0=0.0, t_span=(0, 1000), atol=0, step=step, method=method)
-    assert still.success
-    assert not still.y.any()
-    assert still.stats.rejected == 0
-    moving = pc.simulate(
-        floating, q0=0.0, qd0=2.0, t_span=(0, 1000), atol=0, step=step, method=method
-    )
-    assert moving.q[-1, 0] == pytest.approx(2000.0, rel=1e-12)
-
-
-@pytest.mark.parametrize("n", [7, 9, 12, 49, 103])
-@pytest.mark.parametrize("t0", [0.0, 1.0, 1e5])
-def test_a_max_step_that_divides_the_interval_ends_it_once(n, t0):
-    how = {"method": "dopri5", "max_step": 1 / n, "first_step": 1 / n, "rtol": 1e-2, "atol": 1e-2}
-    sol = pc.simulate(BOOK, q0=[0.1, 0.2], t_span=(t0, t0 + 1), **how)
-    assert (np.diff(sol.t) > 0.5 / n).all()
-    whole = pc.simulate(BOOK, q0=[0.1, 0.2], t_span=(t0, t0 + 2), **how)
-    assert np.array_equal(sol.resume(t0 + 2).t, whole.t)
-
-
-def test_dense_output_far_from_time_zero_is_as_good_as_near_it():
-    near = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5))
-    far = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(2.0**30, 2.0**30 + 5))
-    times = np.arange(0, 5, 1 / 64)  # exact in both
-    assert np.abs(far(2.0**30 + times) - near(times)).max() < 1e-12
-
-
 def test_a_spin_of_a_million_keeps_its_energy_and_momentum():
-    sol = pc.simulate(
-        FLOATING, q0=[0.0, 1.0], qd0=[1e6, -2e6], t_span=(0, 1e-4), rtol=1e-12, atol=1e-9
-    )
-    energy = total_energy(sol)
+    how = {"rtol": 1e-12, "atol": 1e-9}
+    sol = pc.simulate(FLOATING, (0, 1e-4), [0.0, 1.0], [1e6, -2e6], **how)
+    energy = sol.energy().total
     assert np.ptp(energy) < 1e-9 * energy[0]
     momentum = np.einsum("tij,tj->t", FLOATING.mass_matrix(sol.q), sol.qd)
     assert np.ptp(momentum) < 1e-9 * np.abs(sol.qd).max()
 
 
 def test_angles_of_a_hundred_million_turn_as_small_ones_do():
-    turns = 2 * np.pi * 1.6e7
-    far = pc.simulate(BOOK, q0=[turns + 0.5, turns + 1.2], t_span=(0, 2), rtol=1e-10, atol=1e-10)
+    start = 2 * np.pi * 1.6e7 + np.array([0.5, 1.2])
+    far = pc.simulate(BOOK, (0, 2), start, rtol=1e-10, atol=1e-10)
     # the start is rounded to 1.5e-8 rad: compare with the angle that it stands for
     with mp.workdps(40):
         near = [float(mpf(x) - round(mpf(x) / (2 * mp.pi)) * 2 * mp.pi) for x in far.q[0]]
-    close = pc.simulate(BOOK, q0=near, t_span=(0, 2), rtol=1e-12)
+    close = pc.simulate(BOOK, (0, 2), near, rtol=1e-12)
     assert np.abs((far.q[-1] - far.q[0]) - (close.q[-1] - close.q[0])).max() < 1e-6
 
 
 def test_denormal_rates_are_not_lost():
-    still = pc.Scene(links=ROD.links, gravity=0.0)
-    sol = pc.simulate(still, q0=0.0, qd0=4e-310, t_span=(0, 1.0), atol=0)
+    sol = pc.simulate(ROD.replace(gravity=0.0), (0, 1.0), 0.0, 4e-310, atol=0)
     assert sol.qd[-1, 0] == 4e-310
     assert sol.q[-1, 0] == pytest.approx(4e-310, rel=1e-12)
 
@@ -214,53 +249,84 @@ def test_denormal_rates_are_not_lost():
 @pytest.mark.parametrize("scale", [1e-9, 1e11])
 def test_the_units_do_not_matter(scale):
     # lengths scaled by s and times by sqrt(s), at the same gravity, give the same motion
-    scene = pc.Scene(links=[pc.Link(mass=3e4, length=scale), pc.Link(mass=3e4, length=scale)])
-    scaled = pc.simulate(
-        scene, q0=[0.8, 1.0], t_span=(0, 5 * np.sqrt(scale)), rtol=1e-11, atol=1e-300
-    )
-    plain = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5), rtol=1e-11)
+    scene, t_end = pc.Scene(links=[pc.Link(mass=3e4, length=scale)] * 2), 5 * np.sqrt(scale)
+    scaled = pc.simulate(scene, (0, t_end), START, rtol=1e-11, atol=1e-300)
+    plain = pc.simulate(BOOK, (0, 5), START, rtol=1e-11)
     assert scaled.q[-1] == pytest.approx(plain.q[-1], abs=1e-7)
-
-
-def test_four_times_the_gravity_is_half_the_time():
-    heavy = pc.Scene(links=BOOK.links, gravity=4 * BOOK.gravity)
-    fast = pc.simulate(heavy, q0=[0.8, 1.0], t_span=(0, 2.5), rtol=1e-12)
-    slow = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5.0), rtol=1e-12)
-    assert fast.q[-1] == pytest.approx(slow.q[-1], abs=1e-9)
-    assert fast.qd[-1] == pytest.approx(2 * slow.qd[-1], abs=1e-8)
 
 
 def test_a_swing_next_to_the_separatrix_takes_the_time_of_the_elliptic_integral():
     modulus = 0.999999
-    angle = 2 * np.arcsin(modulus)  # from the hanging vertical
+    start = np.pi / 2 - 2 * np.arcsin(modulus)  # from the hanging vertical
     period = 4 * float(ellipk(modulus**2)) * np.sqrt(2 / (3 * 9.807))
-    sol = pc.simulate(ROD, q0=np.pi / 2 - angle, t_span=(0, period), rtol=1e-13, atol=1e-14)
-    assert sol.q[-1, 0] == pytest.approx(np.pi / 2 - angle, abs=1e-8)
+    sol = pc.simulate(ROD, (0, period), start, rtol=1e-13, atol=1e-14)
+    assert sol.q[-1, 0] == pytest.approx(start, abs=1e-8)
+
+
+# Tolerances -------------------------------------------------------------------------------------
+
+
+def test_absurd_tolerances_end_in_a_solution(method):
+    least = 10 * np.finfo(float).eps
+    fine, finest, too_fine = (
+        pc.simulate(BOOK, (0, 0.1), START, rtol=rtol, method=method, atol=1e-20)
+        for rtol in (1e-13, least, 1e-20)
+    )
+    # a component may be twice the root mean square of four
+    np.testing.assert_allclose(too_fine.y[:, -1], fine.y[:, -1], rtol=0, atol=2e-13)
+    assert np.array_equal(too_fine.y, finest.y)  # doubles resolve no more
+    more_steps = (1e-13 / least) ** (1 / METHODS[method]["order"])
+    assert too_fine.stats.accepted > 0.7 * more_steps * fine.stats.accepted
+
+
+@pytest.mark.parametrize("tolerance", [1e300, 1e30, 1e3])
+def test_tolerances_beyond_measure_end_as_the_status_says(tolerance, method):
+    """At the end or wherever the steps lead to; a tenth of a second is a single step."""
+    how = {"method": method, "rtol": tolerance, "atol": tolerance, "on_failure": "ignore"}
+    assert pc.simulate(BOOK, (0, 0.1), START, **how).success
+    sol = pc.simulate(BOOK, (0, 5), START, **how)
+    assert sol.status in {"finished", "step_too_small", "non_finite"}
+    assert sol.success == (sol.t[-1] == 5)
+    assert np.isfinite(sol.y).all()
+    assert sol.stats.accepted < 100
+
+
+@pytest.mark.parametrize("step", [None, 10.0])
+def test_no_absolute_tolerance_with_components_that_stay_zero(method, step):
+    still, moving = (
+        pc.simulate(ROD.replace(gravity=0.0), (0, 1000), 0.0, w, atol=0, step=step, method=method)
+        for w in (0.0, 2.0)
+    )
+    assert still.success
+    assert not still.y.any()
+    assert still.stats.rejected == 0
+    assert moving.q[-1, 0] == pytest.approx(2000.0, rel=1e-12)
 
 
 def test_energy_drifts_with_the_tolerance_alone():
     drift = []
     for tolerance in (1e-6, 1e-9, 1e-12):
-        energy = total_energy(
-            pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 60), rtol=tolerance, atol=tolerance)
-        )
+        energy = pc.simulate(BOOK, (0, 60), START, rtol=tolerance, atol=tolerance).energy().total
         drift.append(np.abs(energy - energy[0]).max())
     assert drift[2] < 1e-8
     assert drift[1] < 100 * drift[2] ** 0.75
     assert drift[0] > drift[1] > drift[2]
 
 
+# The process ------------------------------------------------------------------------------------
+
+
 def test_a_run_that_keeps_its_end_alone_is_small():
-    sol = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 300), method="dopri5", store="end")
+    sol = pc.simulate(BOOK, (0, 300), START, method="dopri5", store="end")
     assert sol.y.shape == (4, 1)
     assert len(pickle.dumps(sol)) < 5000
     assert sol.stats.accepted > 10_000
 
 
-def seconds_until_ctrl_c_is_heard() -> float:
+def seconds_until_ctrl_c_is_heard():
     asked = 0.0
 
-    def interrupt() -> None:
+    def interrupt():
         nonlocal asked
         time.sleep(0.3)
         asked = time.monotonic()
@@ -269,9 +335,7 @@ def seconds_until_ctrl_c_is_heard() -> float:
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt) as caught:
-        pc.simulate(
-            BOOK, q0=[0.8, 1.0], t_span=(0, 1e9), store="end", max_steps=10**12, time_limit=10
-        )
+        pc.simulate(BOOK, (0, 1e9), START, store="end", max_steps=10**12, time_limit=10)
     heard = time.monotonic()
     thread.join()
     partial = caught.value.solution
@@ -282,16 +346,19 @@ def seconds_until_ctrl_c_is_heard() -> float:
     return heard - asked
 
 
+def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
+    # a busy machine can only lengthen it, so the best of three counts
+    assert min(seconds_until_ctrl_c_is_heard() for _ in range(3)) < 0.1
+
+
 def test_ctrl_c_as_a_run_ends_does_not_lose_it():
     """Make runs longer until the core looks for Ctrl-C once, and not again before the end."""
     interrupt = ctypes.pythonapi.PyErr_SetInterrupt
     interrupt.argtypes, interrupt.restype = [ctypes.c_double], None  # called with a fraction
-    kept = None
+    kept, how = None, {"store": "end", "step": 5e-4, "progress": interrupt}
     for t_end in 10 * 1.2 ** np.arange(40):
         try:
-            pc.simulate(
-                BOOK, q0=[0.8, 1.0], t_span=(0, t_end), store="end", step=5e-4, progress=interrupt
-            )
+            pc.simulate(BOOK, (0, t_end), START, **how)
         except KeyboardInterrupt as caught:
             kept = caught.solution
             break
@@ -300,17 +367,12 @@ def test_ctrl_c_as_a_run_ends_does_not_lose_it():
     assert kept.resume(t_end).success
 
 
-def test_ctrl_c_is_heard_within_a_tenth_of_a_second():
-    # a busy machine can only lengthen it, so the best of three counts
-    assert min(seconds_until_ctrl_c_is_heard() for _ in range(3)) < 0.1
-
-
 def test_a_fork_may_simulate_too():
-    here = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5)).y[:, -1]
+    here = pc.simulate(BOOK, (0, 5), START).y[:, -1]
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
-        os.write(writer, pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5)).y[:, -1].tobytes())
+        os.write(writer, pc.simulate(BOOK, (0, 5), START).y[:, -1].tobytes())
         os._exit(0)
     os.waitpid(child, 0)
     assert os.read(reader, 32) == here.tobytes()
