@@ -2,45 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pendcore as pc
 import pytest
 
 HALF = "swing\udce9"  # what Python makes of a file's name that is not UTF-8
 BOOK = pc.Case.textbook()
 SHORT = {"scene": BOOK.scene, "q0": BOOK.q0, "t_span": (0.0, 0.2)}
-
-
-@pytest.fixture(scope="module")
-def sol() -> pc.Solution:
-    return pc.Case(**SHORT, name="kept").simulate()
-
-
-DOORS: dict[str, Callable[[pc.Solution, Path], object]] = {
-    "name of a case": lambda sol, path: pc.Case(**SHORT, name=HALF),
-    "name in a case file": lambda sol, path: pc.read_case(
-        BOOK.to_toml().replace("double pendulum", HALF)
-    ),
-    "name of a solution": lambda sol, path: setattr(sol, "name", HALF),
-    "title of a page": lambda sol, path: sol.to_html(path / "a.html", title=HALF),
-    "names in a film": lambda sol, path: sol.to_video(path / "a.gif", sol, names=("a", HALF)),
-    "names in an animation": lambda sol, path: sol.animate(names=(HALF,)),
-    "label in a figure": lambda sol, path: sol.plot(label=HALF),
-    "name of a comparison": lambda sol, path: pc.accuracy_cost(
-        BOOK.scene, q0=BOOK.q0, t_span=(0, 0.1), methods="dopri5", name=HALF
-    ),
-    "name of a reducer": lambda sol, path: pc.ensemble(
-        BOOK.scene, q0=[BOOK.q0], t_span=(0, 0.1), keep={HALF: pc.reducers.EnergyDrift()}
-    ),
+KEPT = {HALF: pc.reducers.EnergyDrift()}
+DOORS = {
+    "a case": lambda sol, path: pc.Case(**SHORT, name=HALF),
+    "a case file": lambda sol, path: pc.read_case(BOOK.to_toml().replace("double pendulum", HALF)),
+    "a solution": lambda sol, path: setattr(sol, "name", HALF),
+    "the title of a page": lambda sol, path: sol.to_html(path / "a.html", title=HALF),
+    "a film": lambda sol, path: sol.to_video(path / "a.gif", sol, names=("a", HALF)),
+    "an animation": lambda sol, path: sol.animate(names=(HALF,)),
+    "the label in a figure": lambda sol, path: sol.plot(label=HALF),
+    "a comparison": lambda sol, path: pc.accuracy_cost(**SHORT, methods="dopri5", name=HALF),
+    "a reducer": lambda sol, path: pc.ensemble(**SHORT | {"q0": [BOOK.q0]}, keep=KEPT),
 }
 
 
+@pytest.mark.every_value("door")
 @pytest.mark.parametrize("door", DOORS)
-def test_half_a_character_is_refused_at_the_door(
-    door: str, sol: pc.Solution, tmp_path: Path
-) -> None:
+def test_half_a_character_is_refused_at_the_door(door, tmp_path):
+    sol = pc.Case(**SHORT, name="kept").simulate()
     with pytest.raises(ValueError, match=r"holds '\\udce9', half a character.*: leave it out"):
         DOORS[door](sol, tmp_path)
     assert [*tmp_path.iterdir()] == []
@@ -48,16 +33,21 @@ def test_half_a_character_is_refused_at_the_door(
 
 
 @pytest.mark.parametrize("given", [None, 5, b"a"])
-def test_a_name_is_a_text(given: object, sol: pc.Solution) -> None:
+def test_a_name_is_a_text(given):
     with pytest.raises(TypeError, match=r"name = .*: must be a text"):
         pc.Case(**SHORT, name=given)
+    sol = pc.Case(**SHORT, name="kept").simulate()
     with pytest.raises(TypeError, match=r"name = .*: must be a text"):
         sol.name = given
     assert sol.name == "kept"
 
 
-@pytest.mark.parametrize("name", ["θ sweep", "摆", "\U0001f600", 'a "b" \\ c\n</script>\x7f', ""])
-def test_any_other_name_comes_back_from_a_file(name: str, tmp_path: Path) -> None:
+CONTROLS = ["\n", "\0\x1f\x7f\x80", "\u2028"]
+TEXTS = ["θ sweep", "摆", "\U0001f600", "\U0001d11e", 'a "b" \\ c\n</script>\x7f', "#[=]", ""]
+
+
+@pytest.mark.parametrize("name", [*CONTROLS, *TEXTS])
+def test_any_other_name_comes_back_from_a_file(name, tmp_path):
     sol = pc.Case(**SHORT, name=name).simulate()
     sol.save(tmp_path / "run.npz")
     assert pc.load(tmp_path / "run.npz").name == name
