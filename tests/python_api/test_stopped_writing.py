@@ -86,6 +86,8 @@ def test_a_report_is_written_without_the_figures_that_cannot_be_drawn(monkeypatc
     status, _, err = pendcore("derive --to report -o o")
     assert (status, listed("o")) == (1, ["report.md"])
     assert "mechanism.png is not written: latex could not be found" in err
+    monkeypatch.setattr("pendcore.derive.report.conversion.has_pandoc", lambda: False)
+    assert "these need pandoc" in pendcore("derive --to report -o o").err
 
 
 @pytest.mark.parametrize("line", ["plot run.npz", "show run.npz -o run.png"])
