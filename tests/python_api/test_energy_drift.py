@@ -10,43 +10,40 @@ import pytest
 from pendcore._views.energy_drift import energy_drift
 
 SCENE = pc.Scene.textbook()
+ROD = pc.Scene(links=[pc.Link(mass=1, length=1)])
+SAID = "too large to trust this run: tighten rtol and atol (or the step)"
+COARSE = {"q0": 1, "t_span": (0, 5), "rtol": 1e-1, "atol": 1e-1}
+LOOSE = {"q0": 1, "t_span": (0, 5), "method": "dopri5", "step": 0.3, "on_failure": "ignore"}
+RUNS = {
+    "coarse": (True, COARSE),
+    "only the start was kept": (True, COARSE | {"t_eval": [0.0]}),  # the end that was reached tells
+    "some of many times": (True, LOOSE | {"t_eval": np.linspace(0, 5, 10_001)}),
+    "textbook": (False, {"q0": [pi / 4, pi / 3], "t_span": (0, 5)}),
+    "rest": (False, {"q0": pi / 2, "t_span": (0, 1)}),
+    "rest, upright": (False, {"q0": -pi / 2, "t_span": (0, 1)}),
+    "rest, folded": (False, {"q0": [pi / 2, -pi / 2], "t_span": (0, 1)}),
+    "next to rest": (False, {"q0": pi / 2 + 1e-7, "t_span": (0, 1)}),
+}
 
 
-def test_a_drift_of_the_energy_that_is_too_large_is_called_out():
-    said = "too large to trust this run: tighten rtol and atol (or the step)"
-    coarse = pc.simulate(pc.Scene.textbook(), q0=1, t_span=(0, 5), rtol=1e-1, atol=1e-1)
-    assert said in repr(coarse)
-    assert said in coarse._repr_html_()
-    assert said not in repr(pc.Case.textbook().simulate())
+@pytest.mark.every_value("case")
+@pytest.mark.parametrize("case", RUNS)
+def test_a_drift_of_the_energy_that_is_too_large_is_called_out_and_no_other(case):
+    too_large, how = RUNS[case]
+    run = pc.simulate(SCENE, **how)
+    assert (SAID in repr(run)) == (SAID in run._repr_html_()) == too_large
 
 
-@pytest.mark.parametrize("q0", [pi / 2, -pi / 2, [pi / 2, -pi / 2], pi / 2 + 1e-7])
-def test_rest_is_trusted_to_its_last_bits(q0):
-    assert "too large" not in repr(pc.simulate(SCENE, q0=q0, t_span=(0, 1)))
-
-
-def test_a_drift_between_what_was_kept_is_called_out():
-    """Only the start was kept of what was asked for: the end that was reached tells."""
-    coarse = {"rtol": 1e-1, "atol": 1e-1}
-    run = pc.simulate(pc.Scene.textbook(), q0=1, t_span=(0, 5), t_eval=[0.0], **coarse)
-    assert "too large to trust this run" in repr(run)
-
-
-def test_of_many_times_a_repr_looks_at_some():
+def test_a_repr_says_when_it_looks_at_some_of_many_times():
     run = pc.simulate(SCENE, q0=0.3, t_span=(0, 1), t_eval=np.linspace(0, 1, 4001))
     assert "(of one time in 2)" in repr(run)
-    kept = np.linspace(0, 5, 10_001)
-    how = {"method": "dopri5", "step": 0.3, "t_eval": kept}
-    loose = pc.simulate(pc.Scene.textbook(), q0=1, t_span=(0, 5), on_failure="ignore", **how)
-    assert "too large to trust this run" in repr(loose)
 
 
 def test_a_run_of_which_only_moments_of_rest_were_kept_is_not_blamed():
-    rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
-    swing = pc.simulate(rod, q0=0.3, t_span=(0, 5))
+    swing = pc.simulate(ROD, q0=0.3, t_span=(0, 5))
     t = np.linspace(1, 5, 200_001)
     back = t[np.abs(swing(t)[1]).argmin()]
-    end = pc.simulate(rod, q0=0.3, t_span=(0, back), store="end")
+    end = pc.simulate(ROD, q0=0.3, t_span=(0, back), store="end")
     assert abs(end.qd[-1, 0]) < 1e-4
     assert "too large" not in repr(end)
 
