@@ -17,23 +17,23 @@ from pendcore._messages.warning import _VALUE
 HEAVY = 123456.0
 
 
-def scene(mass: float) -> pc.Scene:
+def scene(mass):
     return pc.Scene(links=[pc.Link(mass=mass, length=1.0), pc.Link(mass=2 * mass, length=1.0)])
 
 
-def short(k: int) -> None:
+def short(k):
     pc.simulate(pc.Scene.textbook(), q0=[0.5, 0.1 * k], t_span=(0, 5 + k), max_steps=5 + k)
 
 
-def in_degrees(k: int) -> None:
+def in_degrees(k):
     pc.simulate(pc.Scene.textbook(), q0=[45.0, 60.0 + 5 * k], t_span=(0, 0.1))
 
 
-def members(k: int) -> None:
+def members(k):
     pc.ensemble(pc.Scene.textbook(), q0=np.zeros((k + 1, 2)), t_span=(0, 5), max_steps=2)
 
 
-def wave(k: int) -> None:
+def wave(k):
     driven = pc.effects.Motor(1, table=pc.effects.Table(t=[0, 0.5 + k], torque=[1, 2]))
     one = pc.Scene.textbook().replace(effects=[driven])
     pc.simulate(one, q0=0.3, t_span=(0, 1 + k), on_failure="ignore")
@@ -49,7 +49,7 @@ LOOPS: dict[str, tuple[Callable[[int], object], int]] = {
 
 
 @pytest.fixture
-def shown() -> Iterator[list[str]]:
+def shown():
     """Record what Python shows by its own filters."""
     with warnings.catch_warnings(record=True) as told:
         warnings.resetwarnings()
@@ -60,7 +60,7 @@ def shown() -> Iterator[list[str]]:
 
 @pytest.mark.every_value("loop")
 @pytest.mark.parametrize("loop", LOOPS)
-def test_a_loop_hears_of_each_kind_once(loop: str, shown: list[Any]) -> None:
+def test_a_loop_hears_of_each_kind_once(loop, shown):
     call, kinds = LOOPS[loop]
     for k in range(5):
         call(k)
@@ -69,12 +69,12 @@ def test_a_loop_hears_of_each_kind_once(loop: str, shown: list[Any]) -> None:
     assert any(c.isdigit() for c in str(shown[0].message))  # the text itself has its values
 
 
-def test_code_without_a_module_hears_of_it_too(shown: list[Any]) -> None:
+def test_code_without_a_module_hears_of_it_too(shown):
     exec("pc.Scene(links=[pc.Link(mass=1e5, length=1)])", {"pc": pc})
     assert len(shown) == 1
 
 
-def test_another_line_hears_of_it_again(shown: list[Any]) -> None:
+def test_another_line_hears_of_it_again(shown):
     heavy = [pc.Link(mass=HEAVY, length=1.0)]
     pc.Scene(links=heavy)
     pc.Scene(links=heavy)
@@ -82,7 +82,7 @@ def test_another_line_hears_of_it_again(shown: list[Any]) -> None:
     assert second.lineno == first.lineno + 1
 
 
-def test_what_was_shown_takes_no_memory_for_each_text(shown: list[Any]) -> None:
+def test_what_was_shown_takes_no_memory_for_each_text(shown):
     for k in range(50):
         scene(HEAVY + k)
     noted = globals()["__warningregistry__"]
@@ -90,7 +90,7 @@ def test_what_was_shown_takes_no_memory_for_each_text(shown: list[Any]) -> None:
 
 
 @pytest.mark.parametrize("action", ["always", "ignore", "error", "once", "module", "default"])
-def test_filters_do_as_they_say(action: Any, shown: list[Any]) -> None:
+def test_filters_do_as_they_say(action, shown):
     for k in range(3):  # the kinds are noted as shown
         scene(HEAVY + k)
     shown.clear()
@@ -105,9 +105,7 @@ def test_filters_do_as_they_say(action: Any, shown: list[Any]) -> None:
     assert len(shown) == {"always": 6, "ignore": 0}.get(action, 2)
 
 
-def test_what_the_package_does_in_silence_leaves_pythons_filters_alone(
-    tmp_path: Path, shown: list[Any]
-) -> None:
+def test_what_the_package_does_in_silence_leaves_pythons_filters_alone(tmp_path, shown):
     sol = pc.simulate(scene(HEAVY), q0=0.5, t_span=(0, 0.1))
     sol.save(tmp_path / "run.npz")
     varied = {"link[1].mass": [HEAVY, 2 * HEAVY]}
@@ -120,14 +118,14 @@ def test_what_the_package_does_in_silence_leaves_pythons_filters_alone(
     assert len(shown) == 2
 
 
-def test_pytest_warns_sees_each_whatever_was_shown_before(shown: list[Any]) -> None:
+def test_pytest_warns_sees_each_whatever_was_shown_before(shown):
     for k in range(3):
         with pytest.warns(pc.PendcoreWarning, match=r"link 2: mass = 24691\d\.0"):
             scene(HEAVY + k)
 
 
 @pytest.mark.outside_build
-def test_what_is_typed_by_hand_is_answered_each_time() -> None:
+def test_what_is_typed_by_hand_is_answered_each_time():
     """Each input has line 1 of a file of one name."""
     lines = "import pendcore as pc\n" + "".join(
         f"pc.Scene(links=[pc.Link(mass={mass}, length=1)])\n" for mass in (123456, 234567, 123456)
@@ -152,11 +150,11 @@ def test_what_is_typed_by_hand_is_answered_each_time() -> None:
         ("information and nanometres", "information and nanometres"),
     ],
 )
-def test_texts_of_a_kind_differ_in_values_alone(text: str, kind: str) -> None:
+def test_texts_of_a_kind_differ_in_values_alone(text, kind):
     assert _VALUE.sub("#", text) == kind
 
 
-def test_the_page_says_how_to_silence_and_to_raise_them(shown: list[Any]) -> None:
+def test_the_page_says_how_to_silence_and_to_raise_them(shown):
     page = (Path(__file__).parents[2] / "docs/background/trust.md").read_text()
     section = page.partition("## Warnings")[2].partition("\n## ")[0]
     for line in (
