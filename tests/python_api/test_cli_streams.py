@@ -53,15 +53,6 @@ def test_it_draws_whatever_backend_is_set(line):
     assert DRAWN[line] in os.listdir("o")
 
 
-def test_it_draws_without_pyplot(monkeypatch):
-    def shown(*_, **__):
-        raise AssertionError("pyplot asks for a backend")
-
-    monkeypatch.setattr("matplotlib.pyplot.figure", shown)
-    for line in ("run", "map case.toml", f"cost {QUICK}", "show -o a.gif"):
-        assert main(line.split()) == 0
-
-
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
 @pytest.mark.parametrize("command", ["run", "cost", "derive", "explain"])
 def test_what_a_stream_cannot_hold_is_printed_escaped(command, encoding, monkeypatch):

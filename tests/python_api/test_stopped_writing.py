@@ -5,11 +5,9 @@ from __future__ import annotations
 import errno
 import json
 import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -135,34 +133,6 @@ def test_second_runs_that_fail_take_nothing_from_the_first(monkeypatch, pendcore
     assert pendcore("run -o o").status == 0
     assert "not known: no memory" in Path("o/summary.txt").read_text()
     assert pc.load("o/solution.npz").success
-
-
-SLOWLY = """
-import sys, time
-import numpy as np
-from pendcore.cli import main
-write = np.lib.format.write_array
-def slowly(*args, **named):
-    time.sleep(0.1)
-    write(*args, **named)
-np.lib.format.write_array = slowly
-sys.exit(main(["run", "-o", "here"]))
-"""
-
-
-@pytest.mark.outside_build
-def test_ctrl_c_while_the_archive_is_written_keeps_the_small_files():
-    with subprocess.Popen(
-        [sys.executable, "-c", SLOWLY], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        while not [*Path().glob("here/solution*")]:
-            assert process.poll() is None
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert (process.returncode, listed("here")) == (1, SMALL)
-    assert "here/solution.npz: not written: interrupted" in err.splitlines()
-    assert out == Path("here/summary.txt").read_text()
 
 
 LIMITED = """
