@@ -2,34 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import NamedTuple
+from collections import namedtuple
 
 import pytest
 from pendcore.cli import main
 
-
-class Told(NamedTuple):
-    """What a command ended with, and what it printed."""
-
-    status: int
-    out: str
-    err: str
+Told = namedtuple("Told", "status out err")
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """Work in an empty folder."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 @pytest.fixture
-def pendcore(folder: Path, capsys: pytest.CaptureFixture[str]) -> Callable[[str], Told]:
-    """Run `pendcore` with the words of a line, in an empty folder."""
+def pendcore(folder, capsys):
+    """Run `pendcore` with the words of a line, in an empty folder; return what it told."""
 
-    def run(line: str) -> Told:
+    def run(line):
         capsys.readouterr()
         status = main(line.split())
         return Told(status, *capsys.readouterr())

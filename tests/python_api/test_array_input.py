@@ -176,11 +176,3 @@ def test_what_was_handed_over_may_be_changed_afterwards() -> None:
 def test_a_huge_array_is_refused_by_its_size(name: str) -> None:
     with pytest.raises(ValueError, match=f"^{name}: has 10000000 numbers: must have"):
         run_with(name)(np.ones(10**7))
-
-
-def test_angles_of_few_bits_are_turned_in_many() -> None:
-    assert pc.angles_from_vertical(np.float16([0.25])).dtype == np.float64
-    with pytest.raises(TypeError, match=r"^theta: holds text: must hold real numbers \(rad\)"):
-        pc.angles_from_vertical(["1"])
-    with pytest.raises(ValueError, match=r"^q\[0\] = nan: must be finite \(rad\)"):
-        pc.angles_to_vertical([np.nan])

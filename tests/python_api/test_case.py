@@ -1,10 +1,13 @@
-"""A case comes back from all that it can be written as; a file may say it in several ways."""
+"""A case comes back from all that it can be written as; docs/how_to/case_files.md has every key."""
 
 from __future__ import annotations
 
 import copy
 import pickle
+import re
+import tomllib
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pendcore as pc
@@ -12,6 +15,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from pendcore import effects as fx
+from pendcore._cases.case_file import EVENT_KEYS, KEYS
+from pendcore._run.options import RUN_DEFAULTS
 
 LINK = "[[link]]\nmass = 1.0\nlength = 1.0\n"
 TEXTBOOK = f"""\
@@ -80,10 +85,6 @@ def test_a_case_comes_back_from_toml_repr_pickle_and_copy_to_the_last_bit(case):
     for again in (pc.read_case(case.to_toml()), eval(repr(case), names), pickled):
         assert again == copy.deepcopy(again) == case
         assert hash(again) == hash(case)
-
-
-def case_with(**changes):
-    return pc.Case(**{"scene": pc.Scene.textbook(), "q0": 1, "t_span": (0, 5), **changes})
 
 
 def test_the_textbooks_case_is_that_of_the_documents():
@@ -155,23 +156,48 @@ def test_effects_are_tables_of_their_kind_in_their_order_without_what_is_as_by_d
 
 def test_options_are_simulates_keywords_and_cannot_be_changed():
     t = np.linspace(0, 5, 11)
-    case = case_with(options={"t_eval": t, "rtol": np.float64(1e-6)})
+    options = {"t_eval": t, "rtol": np.float64(1e-6)}
+    case = pc.Case(scene=pc.Scene.textbook(), q0=1, t_span=(0, 5), options=options)
     assert case.options == {"t_eval": tuple(t.tolist()), "rtol": 1e-6}
     assert np.array_equal(case.simulate().t, t)
     with pytest.raises(TypeError):
         case.options["rtol"] = 1e-3
-    with pytest.raises(TypeError, match=r"no keyword 'tolerance': known are method, rtol"):
-        case_with(options={"tolerance": 1})
 
 
-def test_a_python_function_cannot_be_written():
-    with pytest.raises(TypeError, match=r"^progress = .* cannot be written as TOML"):
-        case_with(options={"progress": print}).to_toml()
+REFERENCE = (Path(__file__).parents[2] / "docs/how_to/case_files.md").read_text()
+BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("q0", [1, 2, 3]), ("qd0", [[0, 0]]), ("t_span", 5), ("t_span", (0, 1, 2))]
-)
-def test_wrong_shapes_are_told_by_name(name, value):
-    with pytest.raises(ValueError, match=rf"^{name}: shape"):
-        case_with(**{name: value})
+def documented():
+    """Kind of table, key and default of every row of the reference."""
+    for section in REFERENCE.split("\n## ")[1:]:
+        title = section.splitlines()[0].strip("`[]")
+        for key, default in re.findall(r"^\| `(\w+)` \| [^|]*\| ([^|]*) \|", section, re.MULTILINE):
+            yield "" if title == "Above all tables" else title, key, default
+
+
+def test_the_reference_has_every_key_and_no_other():
+    found = [(kind, key) for kind, key, _ in documented()]
+    assert found == [(kind, key) for kind, keys in KEYS.items() for key in keys]
+
+
+def test_the_reference_has_the_keys_of_every_event():
+    (rows,) = re.findall(r"^\| kind \| keys, and for each.*?\n\n", REFERENCE, re.M | re.DOTALL)
+    usual, _, *kinds = (re.findall(r"`(\w+)`", row) for row in rows.strip().splitlines())
+    found = {kind: {"kind", *keys, *usual} for kind, *keys in kinds}
+    assert found == {kind: set(keys) for kind, keys in EVENT_KEYS.items()}
+
+
+def test_the_reference_has_the_defaults_of_simulate():
+    for kind, key, default in documented():
+        usual = RUN_DEFAULTS.get(key) if kind == "run" else None
+        assert "`None`" not in default, key
+        if usual is not None:
+            assert tomllib.loads(f"default = {default.strip('`')}")["default"] == usual, key
+
+
+@pytest.mark.parametrize("tables", BLOCKS[1:])
+def test_the_tables_that_the_reference_shows_can_be_added_to_a_case(tables):
+    before, start = BLOCKS[0].split("[start]")
+    added = pc.read_case(f"{before}{tables}[start]{start}").scene.effects
+    assert [effect.kind for effect in added] == re.findall(r'kind = "(\w+)"', tables)

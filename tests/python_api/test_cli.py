@@ -158,12 +158,6 @@ def test_earlier_files_are_replaced_and_it_says_so(pendcore):
     assert ["replaced" in pendcore(x).err for x in lines] == [False, True, False, True]
 
 
-def test_an_implausible_scene_is_run_with_a_warning(pendcore):
-    Path("odd.toml").write_text(CASE.replace("length = 1.0\n", "length = 1.0\ninertia = 9.0\n", 1))
-    status, _, err = pendcore("run odd.toml")
-    assert (status, "pendcore: warning: link 1: inertia = 9" in err) == (0, True)
-
-
 @pytest.mark.parametrize(
     ("asked", "figure"),
     [

@@ -21,6 +21,12 @@ FILES = {
     "links.toml": CASE.replace("[start]", "[[link]]\nmass = 1\nlength = 1\n[start]"),
     "kind.toml": '[[link]]\nmass = 1\nlength = 1\n[[effect]]\nkind = "viscus_joint"\n',
     "failure.toml": CASE + 'on_failure = "yes"\n',
+    "map.toml": f"""{CASE}
+[map]
+show = "q[1]"
+x = {{name = "q0[1]", start = 0, stop = 1, count = 20_000}}
+y = {{name = "q0[2]", start = 0, stop = 1, count = 20_000}}
+""",
     "a.npz": "no archive",
     "there": None,
 }
@@ -71,6 +77,8 @@ WORDS = {
     "show case.toml --rtol 1": "rtol is an option of the run: write rtol = ... below [run] in the",
     "show case.toml --csv": "--csv: --csv is an option of `pendcore run`\n",
     "show case.toml --gravity 3": "--gravity 3: write gravity = ... into the case\n",
+    "map map.toml -o o": "20,000 x 20,000 pixels: must be at most 100,000,000",
+    "map map.toml --count 1000000000": "must be",
     "plot a.npz": "a.npz: is not a solution that pendcore saved",
     "plot key.toml": "key.toml: is a case, not a solution: `pendcore run`",
     "plot x.npz": "x.npz: No such file or directory",

@@ -10,10 +10,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore._explanation.constraints import constraint_jacobian
-from pendcore._explanation.equilibria import FreeAngles
 
-ROOT = Path(__file__).parents[2]
 G = 9.807
 ROD = pc.Link(mass=1.0, length=1.0)
 TEXTBOOK = pc.Scene.textbook()
@@ -196,7 +193,6 @@ def test_equilibria_have_their_locked_joints_where_they_are_locked(case):
     freedom = 3 - len(locks)
     assert told.degrees_of_freedom == told.mobility.degrees_of_freedom == freedom
     assert told.constraint_rank == 9 - freedom
-    assert len(FreeAngles(told.scene, 0.0, np.zeros(3)).leaders) == freedom
     assert told.equilibria
     for found in told.equilibria:
         phi = np.diff(found.q, prepend=0.0)
@@ -205,24 +201,6 @@ def test_equilibria_have_their_locked_joints_where_they_are_locked(case):
         straight = np.abs(np.sin(phi[1:])).max(initial=0.0) < 1e-6
         assert straight or found.name not in ("hanging", "upright")
     assert told.remarks == ()
-
-
-def test_the_constraint_jacobian_has_no_row_that_a_motion_violates():
-    """Any rates of the joints make velocities of the links that all constraints allow."""
-    scene = pc.Scene(links=[ROD, pc.Link(mass=1, length=0.3, center=0.1), ROD])
-    rng = np.random.default_rng(1)
-    q, qd = rng.normal(size=(2, 3))
-    step = 1e-6
-
-    def coordinates(q):
-        centers = scene._compiled.mass_centers(np.zeros(1), q[np.newaxis])[0]
-        return np.column_stack([centers, q]).ravel()
-
-    velocity = (coordinates(q + step * qd) - coordinates(q - step * qd)) / (2 * step)
-    jacobian = constraint_jacobian(scene, q)
-    assert jacobian.shape == (6, 9)
-    assert np.abs(jacobian @ velocity).max() < 1e-8
-    assert np.abs(jacobian @ rng.normal(size=9)).max() > 0.1
 
 
 def test_many_links_are_explained_without_their_matrices():
@@ -322,19 +300,6 @@ def test_it_prints_as_a_table_of_plain_numbers_and_fits_into_json():
         assert not any(words in shown for words in ("np.float64", "-0.0,", "-0.0)"))
 
 
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"q": [1, 2, 3]}, r"^q: shape \(3,\): must be \(2,\)"),
-        ({"t": float("nan")}, r"^t = nan: must be finite"),
-        ({"t": "now"}, r"^t: "),
-    ],
-)
-def test_what_cannot_be_asked_is_refused(asked, message):
-    with pytest.raises((ValueError, TypeError), match=message):
-        TEXTBOOK.explain(**asked)
-
-
 def test_the_command_explains_a_case_at_its_start_and_warns_as_a_run_would(pendcore):
     scene = rods(2, fx.Motor(1, table=fx.Table([1, 2], [0, 2])))
     Path("swing.toml").write_text(pc.Case(scene=scene, q0=[1, 45], t_span=(1, 5)).to_toml())
@@ -352,11 +317,11 @@ def test_the_command_explains_a_case_at_its_start_and_warns_as_a_run_would(pendc
 
 WILD = {
     "a length below all measure": (pc.Link(mass=1.0, length=1e-310, inertia=1.0), []),
-    "damping beyond all measure": (pc.Link(mass=1.0, length=1.0), [fx.ViscousJoint(1, 1e308)]),
+    "damping beyond all measure": (ROD, [fx.ViscousJoint(1, 1e308)]),
     "gravity beyond all measure": (pc.Link(mass=1e-20, length=1e154), [fx.Motor(1, 1e300)]),
     "a link of nothing": (
         pc.Link(mass=2.7e271, length=3.1e-272, center=2.7e-272, inertia=3.5e-273),
-        [fx.ViscousJoint(1, 2e-308, damping2=1e200)],
+        [fx.ViscousJoint(1, 2e-308, 1e200)],
     ),
 }
 

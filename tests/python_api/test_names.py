@@ -32,16 +32,6 @@ def test_half_a_character_is_refused_at_the_door(door, tmp_path):
     assert sol.name == "kept"
 
 
-@pytest.mark.parametrize("given", [None, 5, b"a"])
-def test_a_name_is_a_text(given):
-    with pytest.raises(TypeError, match=r"name = .*: must be a text"):
-        pc.Case(**SHORT, name=given)
-    sol = pc.Case(**SHORT, name="kept").simulate()
-    with pytest.raises(TypeError, match=r"name = .*: must be a text"):
-        sol.name = given
-    assert sol.name == "kept"
-
-
 CONTROLS = ["\n", "\0\x1f\x7f\x80", "\u2028"]
 TEXTS = ["θ sweep", "摆", "\U0001f600", "\U0001d11e", 'a "b" \\ c\n</script>\x7f', "#[=]", ""]
 

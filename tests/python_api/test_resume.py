@@ -133,23 +133,16 @@ def test_a_leg_has_limits_and_progress_of_its_own():
 STATE = begun()._run.__getstate__()
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        {"dense_start": [], "dense_start_low": [], "dense_h": [], "dense_coefficients": []},
-        {"dense_start": STATE["dense_start"] + 1.0},
-        {"t_start": -1.0},
-        {"t_reached": float("nan")},
-        {"links": [1.0, 1.0, 0.5]},
-        {"status": "splendid"},
-        {"dense_degree": 3},
-        {"t": [0.0]},
-        {"position_nfev": -(2**63)},
-        {"statistics_accepted": 2**62},
-        {"position_stiff_hits": -1},
-        {"position_log2_error_before": 1e300},
-    ],
-)
+NO_DENSE = ("dense_start", "dense_start_low", "dense_h", "dense_coefficients")
+DAMAGE = [
+    {name: [] for name in NO_DENSE}, {"dense_start": STATE["dense_start"] + 1.0}, {"t": [0.0]},
+    {"dense_degree": 3}, {"t_start": -1.0}, {"t_reached": np.nan}, {"links": [1.0, 1.0, 0.5]},
+    {"status": "splendid"}, {"statistics_accepted": 2**62}, {"position_nfev": -(2**63)},
+    {"position_stiff_hits": -1}, {"position_log2_error_before": 1e300},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_solution_is_refused(damage):
     run = _core.Run.__new__(_core.Run)
     with pytest.raises(ValueError, match=r"do not fit|four numbers|status|splendid"):

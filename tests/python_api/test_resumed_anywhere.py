@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import warnings
 from pathlib import Path
 
@@ -262,36 +260,6 @@ def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(ledg
         if found := [key for key in found if not key.endswith(("nfev", "njev", "nlu"))]:
             broken[at] = found
     assert broken == {}
-
-
-def enough(fraction):
-    raise LookupError
-
-
-def stopped(way, **how):
-    """Return a run that was stopped from outside, somewhere on its way."""
-    if way == "Ctrl-C":
-        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-    elif way == "progress":
-        how["progress"] = enough
-    else:
-        how |= {"time_limit": 0.1, "on_failure": "ignore"}
-    try:
-        return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 3000.0), **how)
-    except (KeyboardInterrupt, LookupError) as stop:
-        return stop.solution
-
-
-@pytest.mark.parametrize("way", ["Ctrl-C", "progress", "time_limit"])
-@pytest.mark.parametrize("compensated", [False, True])
-def test_a_run_that_was_stopped_from_outside_goes_on_the_same(way, compensated):
-    how = {"max_step": 1e-3, "store": "end", "compensated": compensated}
-    begun = stopped(way, **how)
-    assert begun.status != "finished"
-    reached = float(begun.t[-1])
-    assert 0 < reached < 3000
-    whole = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, reached + 1.0), **how)
-    assert differences(whole, pickle.loads(pickle.dumps(begun)).resume(reached + 1.0)) == []
 
 
 STOPS = [fx.JointStop(1, (-0.3, 1.1), restitution=0.7), fx.JointStop(2, (-0.6, 0.9))]

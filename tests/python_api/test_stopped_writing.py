@@ -7,8 +7,6 @@ import json
 import os
 import subprocess
 import sys
-import threading
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -253,25 +251,6 @@ def test_two_writers_of_one_path_do_not_meet():
         assert first.read_text() == "first"
     assert Path("a.txt").read_text() == "first"
     assert listed() == ["a.txt"]
-
-
-def test_threads_that_save_to_one_path_always_leave_a_whole_file():
-    runs = short(), pc.simulate(BOOK.scene, q0=[-1, -1], t_span=(0, 20))
-    runs[0].save("a.npz")
-    begin = threading.Barrier(4)
-
-    def lengths(one):
-        begin.wait()
-        found = set()
-        for _ in range(10):
-            one.save("a.npz")
-            found.add(len(pc.load("a.npz").t))
-        return found
-
-    with ThreadPoolExecutor(4) as pool:
-        found = set().union(*pool.map(lengths, 2 * runs))
-    assert found <= {len(one.t) for one in runs}
-    assert listed() == ["a.npz"]
 
 
 @pytest.mark.parametrize("stem", ["a" * 246, "é" * 123, "摆" * 82], ids=["1", "2", "3"])

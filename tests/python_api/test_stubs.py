@@ -33,13 +33,13 @@ def declared_in(body):
 
 
 def arguments(function):
-    """Names in order, `=` after those that have a default."""
+    """Names in order, `=...` after those that have a default."""
     given = function.args
-    defaults = [None] * (len(given.posonlyargs + given.args) - len(given.defaults)) + given.defaults
-    words = list(zip(given.posonlyargs + given.args, defaults, strict=True))
-    words += [(ast.arg("*"), None)] * bool(given.kwonlyargs)
-    words += zip(given.kwonlyargs, given.kw_defaults, strict=True)
-    return ", ".join(arg.arg + ("=" if default else "") for arg, default in words)
+    for arg in given.posonlyargs + given.args + given.kwonlyargs:
+        arg.annotation = None
+    given.defaults = [ast.Constant(...) for _ in given.defaults]
+    given.kw_defaults = [default and ast.Constant(...) for default in given.kw_defaults]
+    return ast.unparse(given)
 
 
 def signature(function):
