@@ -36,7 +36,11 @@ def entries(saved):
         return dict(file)
 
 
-@pytest.mark.parametrize("name", ["run", "run.toml", "run.npz"])
+# The last three are as long as the system takes.
+NAMES = ["run", "run.toml", "run.npz", *(f"{x}.npz" for x in ("a" * 246, "é" * 123, "摆" * 82))]
+
+
+@pytest.mark.parametrize("name", NAMES, ids=range(6))
 def test_a_file_is_written_under_the_name_asked_for(sol, name, tmp_path):
     sol.save(str(tmp_path / name))
     assert [path.name for path in tmp_path.iterdir()] == [name]

@@ -93,20 +93,17 @@ def test_any_real_number_makes_a_link(value):
 RIGHT_SHAPES = {"q0": "(2,)", "qd0": "(2,)", "rtol": "a number or (4,)", "atol": "a number or (4,)"}
 
 
-@pytest.mark.parametrize("name", RIGHT_SHAPES)
-@pytest.mark.parametrize("count", [0, 1, 2, 3])
-def test_a_start_of_the_wrong_shape_is_refused_with_the_right_one(name, count):
-    right = 2 if name.startswith("q") else 4
-    if count != right:
-        with pytest.raises(ValueError, match=rf"^{name}\b.*\b{right}\b"):
-            simulate(**{name: np.full(count, 1e-9)})
+SHAPES = [(0,), (1,), (3,), (2, 1), (1, 2), (4, 1), (0, 2), (1, 1, 1)]
 
 
 @pytest.mark.parametrize("name", [*RIGHT_SHAPES, "t_eval"])
-@pytest.mark.parametrize("shape", [(2, 1), (1, 2), (4, 1), (0, 2), (1, 1, 1)])
-def test_more_axes_than_one_are_refused_with_the_right_shape(name, shape):
+@pytest.mark.parametrize("shape", SHAPES, ids=str)
+def test_a_start_of_the_wrong_shape_is_refused_with_the_right_one(name, shape):
     words = f"{name}: shape {shape}: must be {RIGHT_SHAPES.get(name, '(k,)')}"
-    refused(lambda: simulate(**{name: np.ones(shape)}), words, ValueError)
+    if len(shape) == 1:
+        words = f"{name} ... {2 if name.startswith('q') else 4}"
+    if name != "t_eval" or len(shape) > 1:
+        refused(lambda: simulate(**{name: np.full(shape, 1e-9)}), words, ValueError)
 
 
 @pytest.mark.parametrize("bad", [nan, inf, -inf], ids=str)
@@ -228,6 +225,8 @@ VALUE_ERRORS = [
     ("q[0] = nan: must be finite (rad)", lambda: pc.angles_to_vertical([nan])),
     ("q: shape (3,): must be (2,)", lambda: BOOK.explain(q=[1, 2, 3])),
     ("t = nan: must be finite", lambda: BOOK.explain(t=nan)),
+    *[(f"{name}: has 10000000 numbers: must have", partial(simulate, **{name: np.ones(10**7)}))
+      for name in ("q0", "qd0", "rtol", "atol")],
     ("q0: shape", lambda: case(q0=[1, 2, 3])),
     ("qd0: shape", lambda: case(qd0=[[0, 0]])),
     ("t_span: shape", lambda: case(t_span=5)),

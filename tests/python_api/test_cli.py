@@ -51,15 +51,12 @@ FACTS = [
 ]
 
 
-def test_the_summary_tells_what_was_simulated_and_what_came_of_it(pendcore):
+def test_the_summary_and_json_tell_what_was_simulated_and_what_came_of_it(pendcore):
     text = pendcore("run").out
     for fact in FACTS:
         assert re.search(fact, text, re.MULTILINE), fact
     assert "kept time" not in text
     assert "too large to trust" not in text
-
-
-def test_json_has_the_same_facts(pendcore):
     found = json.loads(pendcore("run --json").out)
     assert found == json.loads(Path("out/textbook/summary.json").read_text())
     solution = pc.Case.textbook().simulate()
@@ -177,20 +174,15 @@ def test_plot_draws_a_saved_solution(asked, figure, pendcore):
     assert is_png(figure) == figure.endswith("png")
 
 
-def test_a_csv_file_has_every_digit_of_the_states(pendcore):
-    assert pendcore("run --csv --no-horizon").status == 0
-    assert listed("out/textbook") == sorted([*FILES, "states.csv"])
-    head, *rows = Path("out/textbook/states.csv").read_text(encoding="utf-8").splitlines()
+def test_a_csv_file_has_every_digit_of_the_states_and_parameters_replace_numbers(pendcore):
+    given = "gravity=1.62 link[2].mass=0.5 --parameters q0[1]=0.1 qd0[2]=2"
+    assert pendcore(f"run -o a --csv --no-horizon --parameters {given}").status == 0
+    assert listed("a") == sorted([*FILES, "states.csv"])
+    head, *rows = Path("a/states.csv").read_text(encoding="utf-8").splitlines()
     assert head == "t (s),q_1 (rad),q_2 (rad),qd_1 (rad/s),qd_2 (rad/s)"
-    sol = pc.load("out/textbook/solution.npz")
+    sol = pc.load("a/solution.npz")
     numbers = np.array([[float(x) for x in row.split(",")] for row in rows])
     assert np.array_equal(numbers, np.column_stack([sol.t, sol.y.T]))
-
-
-def test_parameters_replace_numbers_of_the_case(pendcore):
-    given = "gravity=1.62 link[2].mass=0.5 --parameters q0[1]=0.1 qd0[2]=2"
-    assert pendcore(f"run -o a --no-horizon --parameters {given}").status == 0
-    sol = pc.load("a/solution.npz")
     assert (sol.scene.gravity, sol.scene.links[1].mass) == (1.62, 0.5)
     assert (sol.q[0, 0], sol.qd[0, 1]) == (0.1, 2.0)
     assert sol.scene.links[1].inertia == pytest.approx(0.5 / 12)

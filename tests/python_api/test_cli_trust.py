@@ -73,10 +73,16 @@ def test_second_runs_that_nobody_asked_for_are_stopped(compared, monkeypatch, pe
         assert "`pendcore trust` tells how much longer" in horizon
 
 
-def test_a_run_of_many_steps_gets_no_second_runs_unasked(monkeypatch, pendcore):
+def test_without_second_runs_a_run_says_why(monkeypatch, pendcore):
+    def fails(*_, **__):
+        raise MemoryError("no memory")
+
+    monkeypatch.setattr(pc.Solution, "estimate_error", fails)
+    assert "not known: no memory" in pendcore("run").out
     monkeypatch.setattr("pendcore.cli.horizon.MOST_WORK", 10)
     told = " ".join(pendcore("run").out.split())
     assert "not known: second runs take a while; `pendcore trust` tells" in told
+    assert pc.load("out/textbook/solution.npz").success
 
 
 def test_trust_tells_horizon_exponent_and_defect(pendcore):

@@ -8,6 +8,7 @@ import signal
 import weakref
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from itertools import cycle, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
@@ -92,6 +93,13 @@ OTHERS = {
 }
 
 
+WAYS = OTHERS | {
+    f"{source}, {kept}": partial(SOURCES[source], **KEPT[kept])
+    for source in SOURCES
+    for kept in KEPT
+}
+
+
 @contextmanager
 def alarm_is_ctrl_c():
     before = signal.signal(signal.SIGALRM, press)
@@ -127,19 +135,11 @@ def traces(call):
     raise AssertionError("nothing broke it off")
 
 
-@pytest.mark.every_value("kept", "source")
-@pytest.mark.parametrize("kept", KEPT)
-@pytest.mark.parametrize("source", SOURCES)
-def test_a_run_that_was_broken_off_is_freed_with_its_exception(source, kept):
-    with alarm_is_ctrl_c(), without_collector():
-        assert [x() for x in traces(lambda: SOURCES[source](**KEPT[kept]))] == [None] * 2
-
-
 @pytest.mark.every_value("way")
-@pytest.mark.parametrize("way", OTHERS)
-def test_so_is_what_any_other_work_had_found(way):
-    with without_collector():
-        found = traces(OTHERS[way])
+@pytest.mark.parametrize("way", WAYS)
+def test_what_was_broken_off_is_freed_with_its_exception(way):
+    with alarm_is_ctrl_c(), without_collector():
+        found = traces(WAYS[way])
         assert [x() for x in found] == [None] * len(found)
 
 
@@ -205,15 +205,21 @@ def resident():
     return int(Path("/proc/self/statm").read_text().split()[1]) * mmap.PAGESIZE / 1e6
 
 
-QUICK = ["event", "effect", "resume by event", "case", "run that fails", "ensemble that fails"]
+QUICK = [
+    "event, dense",
+    "effect, dense",
+    "resume by event",
+    "case",
+    "run that fails",
+    "ensemble that fails",
+]
 
 
 @pytest.mark.unsanitized
 @pytest.mark.parametrize("count", [1000, pytest.param(100_000, marks=pytest.mark.whole)])
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")
 def test_any_number_of_runs_may_be_broken_off(count):
-    ways = SOURCES | OTHERS
-    calls = cycle(ways[name] for name in QUICK)
+    calls = cycle(WAYS[name] for name in QUICK)
     for call in islice(calls, 201):
         traces(call)
     before = resident()

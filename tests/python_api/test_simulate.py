@@ -80,9 +80,12 @@ def test_options_may_be_said_in_several_ways(case):
     assert one.method == other.method
 
 
-def test_tolerances_hold_for_their_component():
+def test_tolerances_hold_for_their_component_and_a_fixed_step_but_for_the_last():
     tight_rates = textbook(rtol=[1e-3, 1e-3, 1e-9, 1e-9])
     assert tight_rates.stats.accepted > textbook(rtol=1e-3).stats.accepted
+    run = textbook(step=0.15)
+    np.testing.assert_allclose(np.diff(run.t)[:-1], 0.15, rtol=1e-12)
+    assert run.t[-1] == 5.0
 
 
 def test_the_result_has_the_times_asked_for_and_dense_output_beside_them():
@@ -104,12 +107,6 @@ def test_a_run_of_no_length_is_its_start(method):
     assert np.array_equal(run(2.0), run.y[:, -1])
 
 
-def test_a_fixed_step_is_kept_but_for_the_last():
-    run = textbook(step=0.15)
-    np.testing.assert_allclose(np.diff(run.t)[:-1], 0.15, rtol=1e-12)
-    assert run.t[-1] == 5.0
-
-
 @pytest.mark.parametrize("t_end", [5.0, -5.0])
 def test_the_first_step_is_as_asked_and_none_is_longer_than_max_step(t_end, method):
     run = textbook(t_span=(0.0, t_end), max_step=0.003, method=method, rtol=1e-6)
@@ -122,16 +119,13 @@ def test_the_first_step_is_as_asked_and_none_is_longer_than_max_step(t_end, meth
     assert np.array_equal(run(t_end), run.y[:, -1])
 
 
-def test_a_capped_run_keeps_what_it_has():
+def test_a_run_ends_at_its_limits_and_keeps_what_it_has():
     run = textbook(max_steps=10, on_failure="ignore")
     assert (run.success, run.status) == (False, "max_steps")
     assert "max_steps" in run.message
     assert run.stats.accepted + run.stats.rejected == 10
     assert 0 < run.t[-1] < 5
     assert np.array_equal(run.t, textbook().t[: len(run.t)])
-
-
-def test_a_run_ends_at_its_time_limit():
     began = time.monotonic()
     assert endless(time_limit=0.1).status == "time_limit"
     assert 0.1 <= time.monotonic() - began < 1.0

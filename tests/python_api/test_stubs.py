@@ -35,7 +35,8 @@ def declared_in(body):
 def arguments(function):
     """Names in order, `=...` after those that have a default."""
     given = function.args
-    for arg in given.posonlyargs + given.args + given.kwonlyargs:
+    given.posonlyargs, given.args = [], given.posonlyargs + given.args
+    for arg in given.args + given.kwonlyargs:
         arg.annotation = None
     given.defaults = [ast.Constant(...) for _ in given.defaults]
     given.kw_defaults = [default and ast.Constant(...) for default in given.kw_defaults]

@@ -64,24 +64,16 @@ def test_a_loop_hears_of_each_kind_once(loop, shown):
     assert any(c.isdigit() for c in str(shown[0].message))  # the text itself has its values
 
 
-def test_code_without_a_module_hears_of_it_too(shown):
-    exec("pc.Scene(links=[pc.Link(mass=1e5, length=1)])", {"pc": pc})
-    assert len(shown) == 1
-
-
-def test_another_line_hears_of_it_again(shown):
-    scene(HEAVY)
-    scene(HEAVY)
-    pc.Scene(links=[pc.Link(mass=HEAVY, length=1.0)])
-    assert len(shown) == 3
-    assert shown[2].lineno > shown[0].lineno
-
-
-def test_what_was_shown_takes_no_memory_for_each_text(shown):
+def test_another_line_and_code_without_a_module_hear_of_it_too(shown):
     for k in range(50):
         scene(HEAVY + k)
-    noted = globals()["__warningregistry__"]
-    assert sum("osmium" in key[0] for key in noted if isinstance(key, tuple)) == 2
+    pc.Scene(links=[pc.Link(mass=HEAVY, length=1.0)])
+    exec("pc.Scene(links=[pc.Link(mass=1e5, length=1)])", {"pc": pc})
+    assert len(shown) == 4
+    assert shown[2].lineno > shown[0].lineno
+    # What was shown takes no memory for each text.
+    noted = [key for key in globals()["__warningregistry__"] if isinstance(key, tuple)]
+    assert sum("osmium" in key[0] for key in noted) == 3
 
 
 @pytest.mark.parametrize("action", ["always", "ignore", "error", "once", "module", "default"])
