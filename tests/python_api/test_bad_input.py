@@ -113,6 +113,11 @@ def test_a_start_that_is_not_finite_is_named_with_its_place(name, bad):
     refused(lambda: simulate(**{name: bad}), f"{name} ... = {bad}: must be finite (rad")
 
 
+def below(range):
+    """Return a number below the least of a range that is told in words."""
+    return int(re.search(r"\d+", range)[0]) - 1
+
+
 OPTIONS_OF_A_RUN = [
     ({"t_span": (nan, 1)}, "start of the run = nan: must be finite (s)"),
     ({"t_span": (0, inf)}, "end of the run = inf: must be finite (s)"),
@@ -162,6 +167,8 @@ OPTIONS_OF_A_RUN = [
     ({"rtoll": 1e-6}, "no option of a run is called 'rtoll': did you mean 'rtol'?"),
     ({"tspan": (0, 1)}, "no option of a run is called 'tspan': did you mean 't_span'?"),
     ({"tend": 3}, "no option of a run is called 'tend': did you mean 't_span'?"),
+    *[({name: below(one.range)}, f"{name} = {below(one.range)} ... : must be {one.range}")
+      for name, one in OPTIONS.items() if one.range],
     ({"xyzzy": 1}, "no option of a run is called 'xyzzy': known are scene, t_span, q0, qd0, "),
 ]  # fmt: skip
 
@@ -170,15 +177,6 @@ OPTIONS_OF_A_RUN = [
 @pytest.mark.parametrize(("changes", "words"), OPTIONS_OF_A_RUN, ids=str)
 def test_an_option_out_of_range_is_told_with_the_range(changes, words):
     refused(lambda: simulate(**changes), words)
-
-
-@pytest.mark.parametrize("name", [one.name for one in OPTIONS.values() if one.range])
-def test_a_number_out_of_the_range_of_its_option_is_refused_in_its_words(name):
-    value = int(re.search(r"\d+", OPTIONS[name].range)[0]) - 1
-    with pytest.raises(
-        ValueError, match=rf"^{name} = {value}(\.0)?: must be {OPTIONS[name].range}"
-    ):
-        simulate(**{name: value})
 
 
 def rod_and(**changes):
@@ -252,6 +250,8 @@ VALUE_ERRORS = [
     ("t, q, qd: shapes (3,), (2, 2), (2,): must", lambda: accelerations(t=[0] * 3, q=THREE[:, :2])),
     ("q[1][0] = nan: must be finite (rad)", lambda: BOOK.mass_matrix([[0, 0], [nan, 0]])),
     ("t = inf: must be finite (s)", lambda: accelerations(t=inf)),
+    ("qd[0] = nan: must be finite", lambda: accelerations(qd=[nan, 0])),
+    ("q: is too large", lambda: accelerations(q=[10**400, 0])),
     ("t", lambda: RUN(nan)),
     ("t", lambda: RUN([[0.5]])),
     ("t = -0.001 ... must be within the run, 0.0 to 1.0 s", lambda: RUN(-0.001)),

@@ -101,20 +101,6 @@ def test_a_run_of_no_length_with_dry_friction_goes_forward_alone(rate):
     assert np.array_equal(run(0).resume(1).y, run(1).y)
 
 
-def test_a_few_attempts_at_a_time_get_past_one_that_the_end_cut_short():
-    """The first attempt would go beyond the end, on which the run depends: it is made anew."""
-    how = {"method": "dopri5", "first_step": 2.0}
-    few, whole = capped(t_end=1, max_steps=8, **how), begun(1, **how)
-    assert np.array_equal(few.resume(1).y, whole.y)
-    for t_end in (1, 3):
-        sol, legs = few, 0
-        while sol.status == "max_steps":
-            sol, legs = sol.resume(t_end, max_steps=8, on_failure="ignore"), legs + 1
-        assert np.array_equal(sol.y, begun(t_end, **how).y)
-        if t_end == 1:
-            assert legs == (whole.stats.accepted + whole.stats.rejected - 1) // 8
-
-
 def test_a_leg_has_limits_and_progress_of_its_own():
     def fails_in_here(fraction):
         raise LookupError("enough")

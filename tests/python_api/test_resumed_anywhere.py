@@ -131,6 +131,7 @@ LEGS = [
         for rtol in (1e-3, 1e-8)
         for ledger in (False, True)
     ],
+    (FREE, {"method": "dopri5", "first_step": 2.0}, 1.0),  # it would go beyond the end
     (FREE, {"method": "dopri5", "rtol": 1e-3}, 3.4),
     (FREE, {"method": "dopri5", "rtol": 1e-6}, 4.1),
     (FREE, {"method": "dop853", "rtol": 1e-3}, 2.3),
