@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pendcore as pc
@@ -14,7 +12,7 @@ from pendcore import effects as fx
 SCENE = pc.Scene.textbook()
 
 
-def read_only(x: np.ndarray) -> np.ndarray:
+def read_only(x):
     x = x.copy()
     x.flags.writeable = False
     return x
@@ -23,14 +21,14 @@ def read_only(x: np.ndarray) -> np.ndarray:
 class ArrayLike:
     """An object that is no array, but can be read as one."""
 
-    def __init__(self, x: np.ndarray) -> None:
+    def __init__(self, x):
         self._x = x
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+    def __array__(self, dtype=None, copy=None):
         return self._x.copy()
 
 
-FORMS: dict[str, Callable[[np.ndarray], Any]] = {
+FORMS = {
     "read-only": read_only,
     "strided": lambda x: np.repeat(x, 3)[::3],
     "reversed": lambda x: x[::-1].copy()[::-1],
@@ -49,11 +47,9 @@ FORMS: dict[str, Callable[[np.ndarray], Any]] = {
 }
 """Numbers of few bits, so that they are the same in every form."""
 
-Ask = Callable[[Any], np.ndarray]
 
-
-def run_with(name: str) -> Ask:
-    def ask(values: Any) -> np.ndarray:
+def run_with(name):
+    def ask(values):
         capped = {"t_span": (0, 4), "max_steps": 50, "on_failure": "ignore"}
         sol = pc.simulate(
             SCENE, **({"q0": [0.25, 1.0], "qd0": [0.5, -1.0]} | capped | {name: values})
@@ -64,7 +60,7 @@ def run_with(name: str) -> Ask:
 
 
 DENSE = pc.simulate(SCENE, q0=[0.25, 1.0], qd0=[0.5, -1.0], t_span=(0, 2))
-TAKEN: dict[str, tuple[list[float], Ask]] = {
+TAKEN = {
     "q0": ([0.25, 1.0], run_with("q0")),
     "qd0": ([0.5, -1.0], run_with("qd0")),
     "rtol": ([2.0**-20] * 4, run_with("rtol")),
@@ -81,7 +77,7 @@ TAKEN: dict[str, tuple[list[float], Ask]] = {
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("taken", TAKEN)
-def test_an_array_of_any_make_is_read_for_what_it_holds(taken: str, form: str) -> None:
+def test_an_array_of_any_make_is_read_for_what_it_holds(taken, form):
     values, ask = TAKEN[taken]
     if form == "repeated by a stride of zero":
         if taken == "t_eval":
@@ -92,21 +88,21 @@ def test_an_array_of_any_make_is_read_for_what_it_holds(taken: str, form: str) -
     assert np.array_equal(np.asarray(given, dtype=float), values)  # left as it was
 
 
-def members(**given: Any) -> np.ndarray:
+def members(**given):
     return pc.ensemble(SCENE, **({"q0": [0.25, 1.0], "t_span": (0, 1)} | given)).q
 
 
-def resumed(times: Any) -> np.ndarray:
+def resumed(times):
     begun = pc.simulate(SCENE, q0=0.5, t_span=(0, 0.25), t_eval=[0.25])
     return begun.resume(2, times).t
 
 
-def under_constant_torques(torques: Any) -> np.ndarray:
+def under_constant_torques(torques):
     scene = SCENE.replace(effects=[fx.User(lambda *_: torques)])
     return scene.accelerations(0.0, [0, 0], [0, 0])
 
 
-ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
+ALSO_TAKEN = {
     "ensemble q0": ([[0.25, 1.0], [0.5, 1.0]], lambda x: members(q0=x)),
     "ensemble qd0": ([[0.25, 1.0], [0.5, 1.0]], lambda x: members(qd0=x)),
     "vary": ([9.0, 10.0], lambda x: members(vary={"gravity": x})),
@@ -124,13 +120,13 @@ ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
 }
 
 
-def masked(values: Any) -> np.ma.MaskedArray[Any, Any]:
+def masked(values):
     given = np.ma.array(values, dtype=float)
     given[(0,) * given.ndim] = np.ma.masked
     return given
 
 
-MASKED: dict[str, Callable[[Any], Any]] = {
+MASKED = {
     "an array": masked,
     "an array of whole numbers": lambda x: np.ma.array(np.ones(np.shape(x), int), mask=True),
     "a list": lambda x: [*masked(x)],
@@ -140,7 +136,7 @@ MASKED: dict[str, Callable[[Any], Any]] = {
 @pytest.mark.every_value("taken", "form")
 @pytest.mark.parametrize("form", MASKED)
 @pytest.mark.parametrize("taken", TAKEN | ALSO_TAKEN)
-def test_masked_values_are_refused_where_numbers_are_taken(taken: str, form: str) -> None:
+def test_masked_values_are_refused_where_numbers_are_taken(taken, form):
     values, ask = (TAKEN | ALSO_TAKEN)[taken]
     unmasked = np.ma.array(values, dtype=float)
     assert np.array_equal(ask(unmasked), ask(values))
@@ -149,7 +145,7 @@ def test_masked_values_are_refused_where_numbers_are_taken(taken: str, form: str
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
-def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
+def test_tables_of_states_are_read_in_either_order(order):
     q = np.arange(24.0).reshape(3, 4, 2)
     rows = [[SCENE.accelerations(0.0, x, 2 * x) for x in y] for y in q]
     found = SCENE.accelerations(0.0, np.asarray(q, order=order), np.asarray(2 * q, order=order))
@@ -160,7 +156,7 @@ def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
     assert SCENE.mass_matrix(q[:, :0]).shape == (3, 0, 2, 2)
 
 
-def test_what_was_handed_over_may_be_changed_afterwards() -> None:
+def test_what_was_handed_over_may_be_changed_afterwards():
     q0, times, rtol = np.array([0.25, 1.0]), np.array([0.5, 1.0]), np.full(4, 1e-6)
     sol = pc.simulate(SCENE, q0=q0, t_span=(0, 1), t_eval=times, rtol=rtol)
     before, case = sol.y.copy(), sol.case()

@@ -155,16 +155,11 @@ def test_earlier_files_are_replaced_and_it_says_so(pendcore):
     assert ["replaced" in pendcore(x).err for x in lines] == [False, True, False, True]
 
 
-@pytest.mark.parametrize(
-    ("asked", "figure"),
-    [
-        ("-o a.png", "a.png"),
-        ("-o a.pdf", "a.pdf"),
-        ("-o a.svg", "a.svg"),
-        ("-o a", "a.png"),
-        ("", "run.png"),
-    ],
-)
+DRAWN = [("-o a.png", "a.png"), ("-o a.pdf", "a.pdf"), ("-o a.svg", "a.svg")]
+DRAWN += [("-o a", "a.png"), ("", "run.png")]
+
+
+@pytest.mark.parametrize(("asked", "figure"), DRAWN)
 def test_plot_draws_a_saved_solution(asked, figure, pendcore):
     pc.Case.textbook().simulate().save("run.npz")
     status, out, err = pendcore(f"plot run.npz --json {asked}")

@@ -275,22 +275,16 @@ def test_what_is_absent_is_told_and_what_is_present_is_not():
 
 def test_it_prints_as_a_table_of_plain_numbers_and_fits_into_json():
     told = rods(2, fx.ViscousJoint(1, 0.1)).explain()
-    lines = repr(told).splitlines()
-    for line in (
-        "2 links, gravity 9.807 m/s^2, explained at t = 0 s",
-        "  the textbook's count       M = 3 n - 2 c5 - c4 = 3*2 - 2*2 - 0 = 2",
-        "  the constraints' Jacobian  3 n - rank = 6 - 4 = 2",
-        "  hanging, stable: q = (1.5708, 1.5708) rad",
-        "  upright, unstable: q = (-1.5708, -1.5708) rad",
-    ):
-        assert line in lines
-    for start in (
+    for words in (
+        "2 links, gravity 9.807 m/s^2, explained at t = 0 s\n",
+        "M = 3 n - 2 c5 - c4 = 3*2 - 2*2 - 0 = 2\n",
+        "3 n - rank = 6 - 4 = 2\n",
+        "hanging, stable: q = (1.5708, 1.5708) rad\n",
+        "upright, unstable: q = (-1.5708, -1.5708) rad\n",
         "  ViscousJoint(joint=1, damping=0.1)",
         "  motor               A motor in a joint",
     ):
-        assert any(line.startswith(start) for line in lines)
-    long = rods(2, fx.DrivenPivot(y=fx.Sinusoid(amplitude=0.01, angular_frequency=350.0)))
-    assert repr(long.effects[0]) in " ".join(repr(long.explain()).split())
+        assert words in repr(told)
     again = json.loads(json.dumps(told.to_dict(), allow_nan=False))
     assert again == told.to_dict()
     assert (again["degrees_of_freedom"], again["first_step"]) == (2, told.first_step)

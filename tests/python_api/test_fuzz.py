@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
-
-import pendcore as pc
 import pytest
 from fuzz import campaign
 from fuzz.choices import FromSeed
@@ -12,12 +9,6 @@ from fuzz.drawn_run import TIME_LIMIT
 from fuzz.readers import (
     READERS,
     finding,
-    read_archive,
-    read_case,
-    read_store,
-    whole_archives,
-    whole_cases,
-    whole_stores,
 )
 
 CASES = 400
@@ -43,20 +34,3 @@ def test_what_is_damaged_is_refused_in_words_or_used(reader):
     for i in range(TIMES[reader]):
         found = finding(lambda: READERS[reader](FromSeed(f"{reader}/{i}")))  # noqa: B023
         assert found is None, f"{reader}/{i}: {found}"
-
-
-WHOLE = [(read_archive, one) for one in whole_archives()]
-WHOLE += [(read_case, one) for one in whole_cases()]
-
-
-@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
-@pytest.mark.parametrize(("read", "whole"), WHOLE, ids=lambda x: getattr(x, "__name__", ""))
-def test_what_is_whole_is_read_and_used(read, whole):
-    read(whole)
-
-
-@pytest.mark.parametrize("i", range(3))
-def test_stores_that_are_whole_are_read_and_used(i):
-    pytest.importorskip("zarr", exc_type=ImportError)
-    with pytest.warns(pc.PendcoreWarning) if i == 2 else nullcontext():  # of what was not run
-        read_store(whole_stores()[i])

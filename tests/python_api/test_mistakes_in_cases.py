@@ -134,17 +134,14 @@ NO_TABLE = "link = [{mass = 1, length = 1}]\nstart = 1\nrun = {t_end = 5}\n"
 AFTER_QUOTES = f'name = """a\n"""""\n{LINK.replace("mass", "mas")}[start]\nq = 1\n'
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
+def test_lines_are_counted_through_comments_strings_and_lists():
+    for text, words in (
         (LISTED, "case, line 21: unknown key 'rtoll'"),
         (NO_TABLE, "case, line 2: start = 1: must be a table"),
         (AFTER_QUOTES, "case, line 4: unknown key 'mas'"),
-    ],
-)
-def test_lines_are_counted_through_comments_strings_and_lists(text, words):
-    with pytest.raises(ValueError, match=f"^{words}"):
-        pc.read_case(text)
+    ):
+        with pytest.raises(ValueError, match=f"^{words}"):
+            pc.read_case(text)
 
 
 def test_a_file_that_is_not_text_is_named(tmp_path):

@@ -64,18 +64,15 @@ def test_what_cannot_be_replaced_or_changed_is_refused():
             setattr(one, name, 2.0)
 
 
-@pytest.mark.parametrize(
-    ("t", "q", "qd", "shape"),
-    [
+def test_accelerations_broadcast_time_angles_and_rates():
+    for t, q, qd, shape in (
         (np.zeros(5), [1, 2], [0, 0], (5, 2)),
         (0, np.ones((5, 2)), [0, 0], (5, 2)),
         (np.zeros((3, 1)), np.ones((5, 2)), [0, 0], (3, 5, 2)),
         (np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)), (0, 2)),
-    ],
-    ids=["times", "angles", "times and angles", "none"],
-)
-def test_accelerations_broadcast_time_angles_and_rates(t, q, qd, shape):
-    assert BOOK.accelerations(t, q, qd).shape == shape
+    ):
+        assert BOOK.accelerations(t, q, qd).shape == shape
+    assert BOOK.mass_matrix(np.zeros((3, 4, 2))).shape == (3, 4, 2, 2)
 
 
 @pytest.mark.parametrize("rubbed", [False, True])
