@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore import effects as fx
 
 SCENE = pc.Scene.textbook()
 
 
-def read_only(x: np.ndarray) -> np.ndarray:
+def read_only(x):
     x = x.copy()
     x.flags.writeable = False
     return x
@@ -22,14 +21,14 @@ def read_only(x: np.ndarray) -> np.ndarray:
 class ArrayLike:
     """An object that is no array, but can be read as one."""
 
-    def __init__(self, x: np.ndarray) -> None:
+    def __init__(self, x):
         self._x = x
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+    def __array__(self, dtype=None, copy=None):
         return self._x.copy()
 
 
-FORMS: dict[str, Callable[[np.ndarray], Any]] = {
+FORMS = {
     "read-only": read_only,
     "strided": lambda x: np.repeat(x, 3)[::3],
     "reversed": lambda x: x[::-1].copy()[::-1],
@@ -48,26 +47,20 @@ FORMS: dict[str, Callable[[np.ndarray], Any]] = {
 }
 """Numbers of few bits, so that they are the same in every form."""
 
-Ask = Callable[[Any], np.ndarray]
 
-
-def run_with(name: str) -> Ask:
-    def ask(values: Any) -> np.ndarray:
-        given = {
-            "q0": [0.25, 1.0],
-            "qd0": [0.5, -1.0],
-            "t_span": (0, 4),
-            "max_steps": 50,
-            "on_failure": "ignore",
-        }
-        sol = pc.simulate(SCENE, **(given | {name: values}))
+def run_with(name):
+    def ask(values):
+        capped = {"t_span": (0, 4), "max_steps": 50, "on_failure": "ignore"}
+        sol = pc.simulate(
+            SCENE, **({"q0": [0.25, 1.0], "qd0": [0.5, -1.0]} | capped | {name: values})
+        )
         return np.vstack([sol.t, sol.y])
 
     return ask
 
 
 DENSE = pc.simulate(SCENE, q0=[0.25, 1.0], qd0=[0.5, -1.0], t_span=(0, 2))
-TAKEN: dict[str, tuple[list[float], Ask]] = {
+TAKEN = {
     "q0": ([0.25, 1.0], run_with("q0")),
     "qd0": ([0.5, -1.0], run_with("qd0")),
     "rtol": ([2.0**-20] * 4, run_with("rtol")),
@@ -77,74 +70,63 @@ TAKEN: dict[str, tuple[list[float], Ask]] = {
     "accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, x, x)),
     "mass_matrix": ([0.25, 1.0], SCENE.mass_matrix),
     "angles_from_vertical": ([0.25, 1.0], pc.angles_from_vertical),
-    "table": (
-        [-0.5, 1.0, 2.5],
-        lambda x: np.array([pc.effects.Table(t=[0, 1, 2], torque=x).torque]),
-    ),
-    "wind": ([0.5, -1.0], lambda x: np.array([pc.effects.RodDrag(1, 1.0, 0.5, wind=x).wind])),
+    "table": ([-0.5, 1.0, 2.5], lambda x: np.array([fx.Table(t=[0, 1, 2], torque=x).torque])),
+    "wind": ([0.5, -1.0], lambda x: np.array([fx.RodDrag(1, 1.0, 0.5, wind=x).wind])),
 }
 
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("taken", TAKEN)
-def test_an_array_of_any_make_is_read_for_what_it_holds(taken: str, form: str) -> None:
+def test_an_array_of_any_make_is_read_for_what_it_holds(taken, form):
     values, ask = TAKEN[taken]
     if form == "repeated by a stride of zero":
         if taken == "t_eval":
             pytest.skip("times must differ")
-        values = [values[0]] * len(values)
+        values = values[:1] * len(values)
     given = FORMS[form](np.array(values))
     assert np.array_equal(ask(given), ask(values))
     assert np.array_equal(np.asarray(given, dtype=float), values)  # left as it was
 
 
-def members(name: str) -> Ask:
-    def ask(values: Any) -> np.ndarray:
-        given: dict[str, Any] = {"q0": [0.25, 1.0], "t_span": (0, 1)}
-        return pc.ensemble(SCENE, **(given | {name: values})).q
-
-    return ask
+def members(**given):
+    return pc.ensemble(SCENE, **({"q0": [0.25, 1.0], "t_span": (0, 1)} | given)).q
 
 
-ALSO_TAKEN: dict[str, tuple[Any, Ask]] = {
-    "ensemble q0": ([[0.25, 1.0], [0.5, 1.0]], members("q0")),
-    "ensemble qd0": ([[0.25, 1.0], [0.5, 1.0]], members("qd0")),
-    "vary": ([9.0, 10.0], lambda x: members("vary")({"gravity": x})),
-    "t_eval of members": (
-        [0.25, 1.0],
-        lambda x: pc.ensemble(SCENE, q0=[0.25, 1.0], t_span=(0, 1), keep="times", t_eval=x).q,
-    ),
-    "jacobian's neighbour": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, [0, 0], x)),
+def resumed(times):
+    begun = pc.simulate(SCENE, q0=0.5, t_span=(0, 0.25), t_eval=[0.25])
+    return begun.resume(2, times).t
+
+
+def under_constant_torques(torques):
+    scene = SCENE.replace(effects=[fx.User(lambda *_: torques)])
+    return scene.accelerations(0.0, [0, 0], [0, 0])
+
+
+ALSO_TAKEN = {
+    "ensemble q0": ([[0.25, 1.0], [0.5, 1.0]], lambda x: members(q0=x)),
+    "ensemble qd0": ([[0.25, 1.0], [0.5, 1.0]], lambda x: members(qd0=x)),
+    "vary": ([9.0, 10.0], lambda x: members(vary={"gravity": x})),
+    "t_eval of members": ([0.25, 1.0], lambda x: members(keep="times", t_eval=x)),
+    "rates of accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(0.5, [0, 0], x)),
     "times of accelerations": ([0.25, 1.0], lambda x: SCENE.accelerations(x, [0, 0], [0, 0])),
     "angles_to_vertical": ([0.25, 1.0], pc.angles_to_vertical),
-    "spline": (
-        [0.0, 1.0, 0.5],
-        lambda x: np.array([pc.effects.Spline(t=[0, 1, 2], x=x, y=[0, 0, 0]).x]),
-    ),
+    "spline": ([0.0, 1.0, 0.5], lambda x: np.array([fx.Spline([0, 1, 2], x, [0, 0, 0]).x])),
     "case": ([0.25, 1.0], lambda x: np.array(pc.Case(scene=SCENE, q0=x, t_span=(0, 1)).q0)),
     "t_span": ([0.0, 1.0], lambda x: pc.simulate(SCENE, q0=0.5, t_span=x).t),
-    "resume": (
-        [0.5, 1.0],
-        lambda x: pc.simulate(SCENE, q0=0.5, t_span=(0, 0.25), t_eval=[0.25]).resume(2, x).t,
-    ),
+    "resume": ([0.5, 1.0], resumed),
     "lyapunov": ([0.25, 1.0], lambda x: pc.lyapunov(SCENE, q0=x, t_span=(0, 1)).exponents),
     "tip line": ([0.25, 1.0], lambda x: np.array([pc.events.TipLine(x, normal=(0, 1)).point])),
-    "forces of a law": (
-        [0.25, 1.0],
-        lambda x: SCENE.replace(effects=[pc.effects.User(lambda *_: x)]).accelerations(
-            0.0, [0, 0], [0, 0]
-        ),
-    ),
+    "torques of a law": ([0.25, 1.0], under_constant_torques),
 }
 
 
-def masked(values: Any) -> np.ma.MaskedArray[Any, Any]:
+def masked(values):
     given = np.ma.array(values, dtype=float)
     given[(0,) * given.ndim] = np.ma.masked
     return given
 
 
-MASKED: dict[str, Callable[[Any], Any]] = {
+MASKED = {
     "an array": masked,
     "an array of whole numbers": lambda x: np.ma.array(np.ones(np.shape(x), int), mask=True),
     "a list": lambda x: [*masked(x)],
@@ -154,7 +136,7 @@ MASKED: dict[str, Callable[[Any], Any]] = {
 @pytest.mark.every_value("taken", "form")
 @pytest.mark.parametrize("form", MASKED)
 @pytest.mark.parametrize("taken", TAKEN | ALSO_TAKEN)
-def test_masked_values_are_refused_where_numbers_are_taken(taken: str, form: str) -> None:
+def test_masked_values_are_refused_where_numbers_are_taken(taken, form):
     values, ask = (TAKEN | ALSO_TAKEN)[taken]
     unmasked = np.ma.array(values, dtype=float)
     assert np.array_equal(ask(unmasked), ask(values))
@@ -163,18 +145,18 @@ def test_masked_values_are_refused_where_numbers_are_taken(taken: str, form: str
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
-def test_tables_of_states_are_read_in_either_order(order: Any) -> None:
+def test_tables_of_states_are_read_in_either_order(order):
     q = np.arange(24.0).reshape(3, 4, 2)
     rows = [[SCENE.accelerations(0.0, x, 2 * x) for x in y] for y in q]
     found = SCENE.accelerations(0.0, np.asarray(q, order=order), np.asarray(2 * q, order=order))
     assert np.array_equal(found, rows)
-    assert np.array_equal(SCENE.accelerations(0.0, q.swapaxes(0, 1), 2 * q.swapaxes(0, 1)),
-                          found.swapaxes(0, 1))  # fmt: skip
+    turned = SCENE.accelerations(0.0, q.swapaxes(0, 1), 2 * q.swapaxes(0, 1))
+    assert np.array_equal(turned, found.swapaxes(0, 1))
     assert SCENE.accelerations(0.0, q[:0], q[:0]).shape == (0, 4, 2)
     assert SCENE.mass_matrix(q[:, :0]).shape == (3, 0, 2, 2)
 
 
-def test_what_was_handed_over_may_be_changed_afterwards() -> None:
+def test_what_was_handed_over_may_be_changed_afterwards():
     q0, times, rtol = np.array([0.25, 1.0]), np.array([0.5, 1.0]), np.full(4, 1e-6)
     sol = pc.simulate(SCENE, q0=q0, t_span=(0, 1), t_eval=times, rtol=rtol)
     before, case = sol.y.copy(), sol.case()
@@ -184,40 +166,3 @@ def test_what_was_handed_over_may_be_changed_afterwards() -> None:
     assert sol.case() == case
     longer = pc.simulate(SCENE, q0=[0.25, 1.0], t_span=(0, 2), t_eval=[0.5, 1.0], rtol=[1e-6] * 4)
     assert np.array_equal(sol.resume(2).y, longer.y)
-
-
-@pytest.mark.parametrize("name", ["q0", "qd0", "rtol", "atol"])
-def test_a_huge_array_is_refused_by_its_size(name: str) -> None:
-    with pytest.raises(ValueError, match=f"^{name}: has 10000000 numbers: must have"):
-        run_with(name)(np.ones(10**7))
-
-
-NO_ARRAYS = {
-    "a generator": (x for x in (0.25, 1.0)),
-    "a set": {0.25, 1.0},
-    "records": np.array([(1.0, 2.0)], dtype=[("a", float), ("b", float)]),
-    "times of a clock": np.array([1, 2], "m8[s]"),
-    "a text without axes": np.array("x"),
-    "a list of itself": [],
-}
-NO_ARRAYS["a list of itself"].append(NO_ARRAYS["a list of itself"])
-
-
-@pytest.mark.parametrize("name", ["q0", "qd0", "rtol", "atol", "t_eval"])
-@pytest.mark.parametrize("value", NO_ARRAYS.values(), ids=NO_ARRAYS)
-def test_what_holds_no_numbers_is_refused_by_name(name: str, value: Any) -> None:
-    with pytest.raises((TypeError, ValueError), match=rf"^{name}\b"):
-        run_with(name)(value)
-
-
-def test_shapes_that_do_not_go_together_are_told() -> None:
-    with pytest.raises(ValueError, match=r"^t, q, qd: shapes \(3,\), \(2, 2\), \(2,\): must"):
-        SCENE.accelerations(np.zeros(3), np.zeros((2, 2)), [0, 0])
-
-
-def test_angles_of_few_bits_are_turned_in_many() -> None:
-    assert pc.angles_from_vertical(np.float16([0.25])).dtype == np.float64
-    with pytest.raises(TypeError, match=r"^theta: holds text: must hold real numbers \(rad\)"):
-        pc.angles_from_vertical(["1"])
-    with pytest.raises(ValueError, match=r"^q\[0\] = nan: must be finite \(rad\)"):
-        pc.angles_to_vertical([np.nan])

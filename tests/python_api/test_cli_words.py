@@ -1,88 +1,166 @@
-"""The command says what to write in place of a word that it does not know or that needs another."""
+"""The command says in a line what to write in place of what it cannot take, and ends with 2."""
 
 from __future__ import annotations
 
-import json
+import os
+import subprocess
+import sys
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.cli import main
 
 CASE = pc.Case.textbook().to_toml()
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    Path("case.toml").write_text(CASE)
-    Path("step.toml").write_text(CASE + "step = -1.0\n")
-    return tmp_path
-
-
+FILES = {
+    "case.toml": CASE,
+    "step.toml": CASE + "step = -1.0\n",
+    "key.toml": CASE.replace("gravity", "gravty"),
+    "rtol.toml": CASE + "rtol = -1.0\n",
+    "method.toml": CASE.replace("ode45", "euler"),
+    "times.toml": CASE + "\nt_eval = [2.0, 1.0]\n",
+    "links.toml": CASE.replace("[start]", "[[link]]\nmass = 1\nlength = 1\n[start]"),
+    "kind.toml": '[[link]]\nmass = 1\nlength = 1\n[[effect]]\nkind = "viscus_joint"\n',
+    "failure.toml": CASE + 'on_failure = "yes"\n',
+    "map.toml": f"""{CASE}
+[map]
+show = "q[1]"
+x = {{name = "q0[1]", start = 0, stop = 1, count = 20_000}}
+y = {{name = "q0[2]", start = 0, stop = 1, count = 20_000}}
+""",
+    "a.npz": "no archive",
+    "there": None,
+}
 WORDS = {
+    "": "COMMAND",
     "rnu": "invalid choice: 'rnu': did you mean 'run'?",
     "wxyz": "invalid choice: 'wxyz': known are run, explain, plot, ",
     "case.toml": "did you mean `pendcore run case.toml`?",
-    "run case.toml --metod rk4": "--metod rk4: did you mean '--method'?",
-    "run case.toml --max-step 1": "max_step is an option of the run: write max_step = ... below",
-    "run case.toml --t_end 3": "t_end is an option of the run: write t_end = ... below [run]",
-    "show case.toml --rtol 1": "rtol is an option of the run: write rtol = ... below [run] in the",
-    "show case.toml --csv": "--csv: --csv is an option of `pendcore run`\n",
-    "run case.toml --gravity 3": "write gravity = ... into the case or give --parameters gravity=",
-    "show case.toml --gravity 3": "--gravity 3: write gravity = ... into the case\n",
+    "--nothing": "unrecognized arguments: --nothing\n",
     "--json run case.toml": "--json: write it after `pendcore run`\n",
     "--rtol=1e-5 run case.toml": "--rtol=1e-5: write it after `pendcore run`\n",
     "--rtol 1e-5 run case.toml": "--rtol: write it after `pendcore run`\n",
-    "--nothing": "unrecognized arguments: --nothing\n",
+    "run --fast": "--fast",
+    "run nothing.toml": "nothing.toml: No such file or directory",
+    "run .": "Is a directory",
+    "run -o key.toml": "key.toml: File exists",
+    "run key.toml": "key.toml, line 2: unknown key 'gravty'",
+    "run rtol.toml": "rtol.toml, line 20: rtol = -1",
+    "run rtol.toml -o a/b/c": "rtol.toml, line 20: rtol = -1",
+    "run rtol.toml -o there": "rtol.toml, line 20: rtol = -1",
+    "run rtol.toml -o there/d": "rtol.toml, line 20: rtol = -1",
+    "run method.toml": 'method.toml, line 19: method = "euler"',
+    "run times.toml": "times.toml, line 21: t_eval[1] = 1.0: must",
+    "run links.toml": "links.toml, line 16: q: shape (2,): must be (3,)",
+    "run failure.toml": "failure.toml, line 20: on_failure = 'yes': must be",
     "run case.toml case.toml": "unrecognized arguments: case.toml\n",
+    "run case.toml --metod rk4": "--metod rk4: did you mean '--method'?",
+    "run case.toml --max-step 1": "max_step is an option of the run: write max_step = ... below",
+    "run case.toml --t_end 3": "t_end is an option of the run: write t_end = ... below [run]",
+    "run case.toml --gravity 3": "write gravity = ... into the case or give --parameters gravity=",
     "run case.toml --method rk4": '--step: none given: method "rk4" estimates no error',
     "run case.toml --method euler": '--method = "euler": must be one of auto, dopri5',
     "run case.toml --rtol -1": "run: --rtol = -1.0: must be finite and > 0",
+    "run case.toml --error 0": "run: --error = 0",
     "run case.toml --rtol 1e-5 --error 1e-6": "--rtol = 1e-05: is chosen for the error: leave out",
+    "run step.toml --method rk4": "step.toml, line 20: step = -1.0: must be",
     "run case.toml --parameters rtol=1e-5": "rtol is an option of the run: write rtol = 1e-5 below"
     " [run] in the case, or give --rtol 1e-5\n",
     "run case.toml --parameters method=rk4": "or give --method rk4\n",
-    "run step.toml --method rk4": "step.toml, line 20: step = -1.0: must be",
     "run case.toml --parameters t_end=3": "write t_end = 3 below [run] in the case\n",
+    "run --parameters gravityy=1": "gravity",
+    "run --parameters gravity": "must be NAME=VALUE",
+    "run --parameters gravity=x": "must be NAME=VALUE",
+    "run --parameters q0[3]=1": "the scene has 2 links, counted from 1",
+    "run --parameters q0=1": "must say of which link, such as q0[1]",
+    "run --parameters link[2].mass=-1": "must be finite and > 0",
+    "run --parameters gravity=1 --parameters gravity=2": "gravity is given twice",
+    "show case.toml --rtol 1": "rtol is an option of the run: write rtol = ... below [run] in the",
+    "show case.toml --csv": "--csv: --csv is an option of `pendcore run`\n",
+    "show case.toml --gravity 3": "--gravity 3: write gravity = ... into the case\n",
+    "map map.toml -o o": "20,000 x 20,000 pixels: must be at most 100,000,000",
+    "map map.toml --count 1000000000": "must be",
+    "plot a.npz": "a.npz: is not a solution that pendcore saved",
+    "plot key.toml": "key.toml: is a case, not a solution: `pendcore run`",
+    "plot x.npz": "x.npz: No such file or directory",
+    "plot run.npz -o a.doc": "doc",
+    "explain kind.toml": "kind.toml, line 5: kind = 'viscus_joint': is no effect: did you mean",
+    "explain nothing.toml": "No such file",
+    "trust --limit 0": "pendcore trust: --limit = 0",
+    "trust --time-limit 0": "pendcore trust: --time-limit = 0",
+    "cost --repeats 0": "pendcore cost: --repeats = 0",
 }
 
 
+@pytest.mark.every_value("line")
 @pytest.mark.parametrize("line", WORDS)
-def test_the_remedy_is_told(line: str, capsys: Any) -> None:
-    assert main(line.split()) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
+def test_the_remedy_is_told_and_nothing_is_written(line, pendcore):
+    for name, text in FILES.items():
+        Path(name).mkdir() if text is None else Path(name).write_text(text)
+    pc.simulate(pc.Scene.textbook(), q0=1, t_span=(0, 0.1)).save("run.npz")
+    status, out, err = pendcore(line)
+    assert (status, out) == (2, "")
     assert WORDS[line] in err
-    assert sorted(path.name for path in Path().iterdir()) == ["case.toml", "step.toml"]
+    assert "Traceback" not in err
+    assert sorted(os.listdir()) == sorted([*FILES, "run.npz"])
+    assert os.listdir("there") == []
 
 
-@pytest.mark.parametrize(
-    ("of_the_case", "given", "kept"),
-    [
-        ("", {"rtol": 1e-5}, {"method": "ode45"}),
-        ("", {"method": "rk4", "step": 0.01}, {}),
-        ("step = 0.01\n", {"rtol": 1e-5, "atol": 1e-7}, {"method": "ode45"}),
-        ("step = 0.01\n", {"method": "rk4"}, {"step": 0.01}),
-        ("max_steps = 4000\n", {"step": 0.02}, {"method": "ode45", "max_steps": 4000}),
-    ],
-    ids=str,
-)
-def test_options_of_the_command_take_the_place_of_those_of_the_case(
-    of_the_case: str, given: dict[str, Any], kept: dict[str, Any]
-) -> None:
-    Path("case.toml").write_text(CASE + of_the_case)
-    options = [word for name, value in given.items() for word in (f"--{name}", str(value))]
-    assert main(["run", "case.toml", "-o", "o", "--no-horizon", *options]) == 0
-    book = pc.Case.textbook()
-    same = pc.simulate(book.scene, q0=book.q0, t_span=book.t_span, **given, **kept)
-    assert np.array_equal(pc.load("o/solution.npz").y, same.y)
+PRINTED = {
+    "--help": "pendcore run swing.toml",
+    "run --help": "[[link]]",
+    "plot --help": "pendcore plot out/textbook/solution.npz",
+    "--version": f"pendcore {pc.__version__} ({pc._core.instruction_set()}, {pc._core.compiler})",
+    "explain": "2 links",
+    "completion bash": "_ARGCOMPLETE",
+    "completion zsh": "_ARGCOMPLETE",
+    "completion fish": "_ARGCOMPLETE",
+}
 
 
-def test_an_error_of_the_case_gives_way_to_a_tolerance_of_the_command() -> None:
-    Path("case.toml").write_text(CASE.replace('method = "ode45"', "error = 1e-6"))
-    assert main(["run", "case.toml", "-o", "o", "--rtol", "1e-7"]) == 0
-    found = json.loads(Path("o/summary.json").read_text())
-    assert (found["run"]["rtol"], found["accuracy"]) == (1e-7, None)
+@pytest.mark.every_value("line")
+@pytest.mark.parametrize("line", PRINTED)
+def test_what_is_asked_for_is_printed(line, pendcore):
+    if line.startswith("completion"):
+        pytest.importorskip("argcomplete")
+    status, out, err = pendcore(line)
+    assert (status, err) == (0, "")
+    assert PRINTED[line] in out
+    assert "pendcore" in out or line == "explain"
+
+
+def test_the_case_in_the_help_is_one(pendcore):
+    assert pc.read_case(pendcore("run --help").out.partition("a case:\n")[2]).simulate().success
+
+
+def test_a_wrong_instruction_set_does_not_hide_behind_the_version(monkeypatch, pendcore):
+    monkeypatch.setattr("pendcore.build.instruction_set", lambda: int("x86-64-v9"))
+    status, _, err = pendcore("--version")
+    assert (status, "x86-64-v9" in err) == (2, True)
+
+
+def test_without_its_library_completion_names_the_remedy(monkeypatch, pendcore):
+    monkeypatch.setitem(sys.modules, "argcomplete", None)
+    status, _, err = pendcore("completion bash")
+    assert (status, "pip install argcomplete" in err) == (2, True)
+
+
+COMMANDS = {"run", "explain", "plot", "trust", "cost", "derive", "completion"}
+COMPLETED = {
+    "pendcore ": COMMANDS,
+    "pendcore co": {"cost", "completion"},
+    "pendcore run --no": {"--no-horizon"},
+    "pendcore completion ": {"bash", "zsh", "fish"},
+}
+
+
+@pytest.mark.outside_build
+@pytest.mark.parametrize("line", COMPLETED)
+def test_a_shell_completes_a_line(line, tmp_path):
+    pytest.importorskip("argcomplete")
+    asked = {
+        "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n", "COMP_TYPE": "9", "COMP_LINE": line,
+        "COMP_POINT": str(len(line)), "_ARGCOMPLETE_STDOUT_FILENAME": str(tmp_path / "told"),
+    }  # fmt: skip
+    subprocess.run([sys.executable, "-m", "pendcore"], env=os.environ | asked, check=True)
+    words = {word.strip() for word in (tmp_path / "told").read_text().split("\n")}
+    assert words >= COMPLETED[line]

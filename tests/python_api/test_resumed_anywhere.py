@@ -1,131 +1,41 @@
 """Wherever and however often a run is stopped, it goes on as if it never had, in every bit.
 
-Scenes hold every kind of effect, stops come at times, after steps, and from functions that raise;
-between two legs a run may have been pickled, saved, or carried to another processor.
+Stops come at times, after steps, and from functions that raise; between two legs a run may have
+been pickled, saved, or carried to another processor.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import warnings
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
-from carried import carried as method_for
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from fuzz.choices import FromSeed
+from fuzz.drawn_run import Drawn, drawn
 from pendcore import _core
 from pendcore import effects as fx
 
-T = 2.5
 METHODS = {method["name"]: method for method in _core.methods()}
 INSTRUCTION_SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
 INSTRUCTION_SETS = INSTRUCTION_SETS[: INSTRUCTION_SETS.index(_core.instruction_set()) + 1]
 OF_THE_LEG = {"max_steps", "time_limit"}
 """The options of a run that each leg is given anew."""
+LINKS = [pc.Link(mass=1.0, length=0.6)]
 
 
-CONTROLLER = fx.PD(kp=20.0, kd=2.0, reference=1.0)
-
-
-def damp(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
-    return -0.01 * qd
-
-
-def effects_of(n: int) -> st.SearchStrategy[Any]:
-    """An effect of any kind, of a size that lets the chain move."""
-    joints = st.integers(1, n)
-    some = st.floats(0.01, 0.5)
-    sinusoids = st.builds(
-        fx.Sinusoid, amplitude=st.floats(0.05, 3), angular_frequency=st.floats(0.5, 12)
-    )
-    knots = st.lists(st.floats(0.05, T - 0.05), min_size=1, max_size=4, unique=True).map(
-        lambda inner: [-1.0, *sorted(inner), T + 1]
-    )
-    tables = knots.map(lambda t: fx.Table(t=t, torque=[0.5 * (-1) ** i for i in range(len(t))]))
-    splines = knots.map(
-        lambda t: fx.Spline(t=t, x=[0.1 * (-1) ** i for i in range(len(t))], y=[0.0] * len(t))
-    )
-    drags = {"drag_coefficient": some, "diameter": some, "wind": st.just((2.0, -1.0))}
-    kinds = {
-        "viscous_joint": st.builds(fx.ViscousJoint, joints, some, damping2=some),
-        "dry_joint_friction": st.builds(fx.DryJointFriction, joints, coulomb=some),
-        "rod_drag": st.builds(fx.RodDrag, joints, **drags),
-        "torsional_spring": st.builds(fx.TorsionalSpring, joints, stiffness=some),
-        "motor": st.one_of(
-            st.builds(fx.Motor, joints, sinusoid=sinusoids, limit=some),
-            st.builds(fx.Motor, joints, table=tables),
-            st.builds(fx.Motor, joints, constant=some),
-            st.builds(
-                fx.Motor, joints, pd=st.just(fx.PD(kp=20.0, kd=2.0, reference=1.0)), limit=some
-            ),
-        ),
-        "rotor_inertia": st.builds(fx.RotorInertia, joints, armature=some),
-        "payload": st.builds(fx.Payload, mass=some),
-        "lock": st.builds(fx.Lock, joints),
-        "driven_pivot": st.one_of(
-            st.builds(fx.DrivenPivot, x=sinusoids), st.builds(fx.DrivenPivot, spline=splines)
-        ),
-        "joint_stop": st.builds(
-            fx.JointStop,
-            joints,
-            range=st.just((-0.4, 3.0)),
-            restitution=st.sampled_from([0.0, 0.5, 1.0]),
-        ),
-        "user": st.just(fx.User(damp)),
-    }
-    assert {*kinds} >= {*fx.kinds()} - {"compiled_user"}
-    return st.sampled_from(sorted(kinds)).flatmap(lambda kind: kinds[kind])
-
-
-@st.composite
-def scenes(draw: st.DrawFn) -> pc.Scene:
-    n = draw(st.integers(1, 3))
-    drawn = draw(st.lists(effects_of(n), max_size=4))
-    locked = [effect.joint for effect in drawn if effect.kind == "lock"]
-    chosen = [e for e in drawn if e.kind != "lock" or locked.count(e.joint) == 1]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.PendcoreWarning)
-        return pc.Scene(links=[pc.Link(mass=1.0, length=0.6)] * n, effects=chosen)
-
-
-@st.composite
-def ways(draw: st.DrawFn) -> dict[str, Any]:
-    """How the run is made."""
-    method = draw(st.sampled_from(sorted(METHODS)))
-    fixed = METHODS[method]["error_order"] == 0 or draw(st.booleans())
-    how: dict[str, Any] = {
-        "method": method,
-        "store": draw(st.sampled_from(["dense", "steps", "end", "times"])),
-        "ledger": draw(st.booleans()),
-        "compensated": METHODS[method]["compensates"] and draw(st.booleans()),
-    }
-    if fixed:
-        return how | {"step": draw(st.sampled_from([0.003, 0.01, 1 / 64]))}
-    how["rtol"] = draw(st.sampled_from([1e-4, 1e-9]))
-    if draw(st.booleans()):
-        how["max_step"] = draw(st.sampled_from([0.05, 1 / 32]))
-    return how
-
-
-GRID = np.linspace(0, T, 26)
-
-
-def has_function(scene: pc.Scene) -> bool:
+def has_function(scene):
     """Whether a function acts, so that its runs stay in their process."""
     return any(effect.kind == "user" for effect in scene.effects)
 
 
-def state(sol: pc.Solution) -> dict[str, Any]:
+def state(sol):
     """All that a run keeps; if it cannot be pickled, all that can be seen of it."""
     if not has_function(sol.scene):
         return sol._run.__getstate__()
@@ -137,10 +47,8 @@ def state(sol: pc.Solution) -> dict[str, Any]:
     return seen | run.statistics | run.ledger | run.arguments
 
 
-def carried(sol: pc.Solution, how: str) -> pc.Solution:
+def carried(sol, how):
     """Give back the same run, after what a user may do with it."""
-    if has_function(sol.scene):
-        return sol
     if how == "pickle":
         return pickle.loads(pickle.dumps(sol))
     if how == "file":
@@ -150,120 +58,161 @@ def carried(sol: pc.Solution, how: str) -> pc.Solution:
     return sol
 
 
-def same(a: Any, b: Any) -> bool:
+def same(a, b):
     """Whether two entries are the same, in every bit."""
     if isinstance(a, np.ndarray):
         return a.tobytes() == b.tobytes()
     return a == b or (a != a and b != b)  # not given is NaN
 
 
-def differences(one: pc.Solution, other: pc.Solution) -> list[str]:
+def differences(one, other):
     """Name what is not the same, of all that a run keeps."""
     a, b = state(one), state(other)
     return [key for key in a if key not in OF_THE_LEG and not same(a[key], b[key])]
 
 
-def in_legs(
-    scene: pc.Scene, start: tuple[Any, Any], legs: list[tuple[float, int | None, str]],
-    sign: float, **how: Any,
-) -> pc.Solution:  # fmt: skip
-    """Run each leg until a time or for a number of steps, and then to the end."""
-    done = 0.0
-    sol: pc.Solution | None = None
-    for t_end, max_steps, between in [*sorted(legs, key=lambda leg: leg[0]), (T, None, "")]:
-        new = GRID[(done < GRID) & (t_end >= GRID)] if sol else GRID[t_end >= GRID]
-        cap = {} if max_steps is None else {"max_steps": max_steps}
-        times = {"t_eval": sign * new} if how["store"] == "times" and len(new) else {}
+def in_legs(case, choices, attempts):
+    """Run up to three legs until a time or for some attempts, and then to the end."""
+    start, end = case.t_span
+    shares = sorted(choices.real(0, 1) for _ in range(choices.integer(0, 3)))
+    sol = None
+    for t_end in [*(start + share * (end - start) for share in shares), end]:
+        capped = t_end != end and choices.one_of((True, False))
+        how = {"max_steps": choices.integer(1, max(attempts, 1)) if capped else 10**6}
         if sol is None:
-            sol = pc.simulate(scene, (0, sign * t_end), *start, **how, **cap, **times)
+            first = Drawn(case.scene, case.q0, case.qd0, (start, t_end), case.options)
+            sol = first.simulate(**how)
         else:
-            sol = sol.resume(sign * t_end, **cap, **times)
-        done = t_end
-        sol = carried(sol, between)
-    assert sol is not None
+            sol = sol.resume(t_end, **how)
+        sol = carried(sol, choices.one_of(("", "pickle", "file")))
     return sol
 
 
-LEGS = st.lists(
-    st.tuples(
-        st.one_of(st.floats(0.0, T), st.sampled_from([*GRID])),
-        st.one_of(st.none(), st.integers(1, 200)),
-        st.sampled_from(["", "pickle", "file"]),
-    ),
-    max_size=4,
-)
-
-
-@settings(max_examples=150)
-@given(
-    scene=scenes(),
-    how=ways(),
-    legs=LEGS,
-    angle=st.floats(0.2, 2.9),
-    rate=st.sampled_from([0.0, 2.0, -5.0]),
-    backward=st.booleans(),
-)
-def test_legs_end_in_the_bits_of_one_run(
-    scene: pc.Scene,
-    how: dict[str, Any],
-    legs: list[tuple[float, int | None, str]],
-    angle: float,
-    rate: float,
-    backward: bool,
-) -> None:
-    n = len(scene.links)
-    locked = {effect.joint for effect in scene.effects if effect.kind == "lock"}
-    rates = [rate] * n if 1 not in locked else [0.0] * n
-    one_way = {"dry_joint_friction", "joint_stop"}
-    sign = -1.0 if backward and not one_way & {e.kind for e in scene.effects} else 1.0
-    start = ([angle] * n, rates)
-    how["method"] = method_for(how["method"], scene)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.PendcoreWarning)  # tables and legs end early
-        whole = in_legs(scene, start, [], sign, **how)
-        broken = in_legs(scene, start, legs, sign, **how)
-    found = differences(whole, broken)
-    if not whole.success:  # it tried again, in vain, and that was counted
-        found = [key for key in found if not key.endswith(("nfev", "njev", "nlu", "rejected"))]
-    assert found == []
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+def test_legs_end_in_the_bits_of_one_run():
+    """Scenes, methods and options are any that end well; sampled runs have tests of their own."""
+    compared, kinds = 0, set()
+    for i in range(250):
+        choices = FromSeed(f"legs/{i}")
+        try:
+            case = drawn(choices)
+            for name in ("events", "t_eval", "time_limit"):
+                case.options.pop(name, None)
+            store = choices.one_of(("dense", "steps", "end"))
+            case.options |= {"store": store, "max_steps": 10_000}
+            whole = None if has_function(case.scene) else case.simulate()
+        except ValueError:  # what was drawn does not agree
+            continue
+        if whole and whole.success:
+            legs = in_legs(case, choices, whole.stats.accepted + whole.stats.rejected)
+            assert differences(whole, legs) == [], f"legs/{i}: {case}"
+            compared += 1
+            kinds |= {effect.kind for effect in case.scene.effects}
+    assert compared > 100
+    assert kinds >= {*fx.kinds()} - {"user", "compiled_user"}
 
 
 RUBBED = pc.Scene(
-    links=[pc.Link(mass=1.0, length=0.6)] * 2,
+    links=LINKS * 2,
     effects=[
         fx.DryJointFriction(1, coulomb=0.1),
-        fx.Motor(2, pd=CONTROLLER, limit=0.4),
+        fx.Motor(2, pd=fx.PD(kp=20.0, kd=2.0, reference=1.0), limit=0.4),
         fx.Motor(1, table=fx.Table(t=[-1, 0.2, 0.6, 9], torque=[0.5, -0.5, 1.0, 1.0])),
     ],
 )
 
 
-@pytest.mark.parametrize("ledger", [False, True])
-@pytest.mark.parametrize("rtol", [1e-3, 1e-8])
-def test_one_attempt_a_leg_is_the_same_run(ledger: bool, rtol: float) -> None:
-    how = {"ledger": ledger, "rtol": rtol, "compensated": ledger}
-    whole = pc.simulate(RUBBED, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
-    assert whole.stats.limited_by_break > 2
-    silent = {"max_steps": 1, "on_failure": "ignore"}
-    sol = pc.simulate(RUBBED, (0, 1.0), [0.4, 1.0], [3.0, -2.0], **silent, **how)
+FREE = RUBBED.replace(effects=[])
+# For each the scene, how it is run, and its end; the step that is cut at the end of the free runs
+# is rejected.
+LEGS = [
+    *[
+        (RUBBED, {"rtol": rtol, "ledger": ledger, "compensated": ledger}, 1.0)
+        for rtol in (1e-3, 1e-8)
+        for ledger in (False, True)
+    ],
+    (FREE, {"method": "dopri5", "first_step": 2.0}, 1.0),  # it would go beyond the end
+    (FREE, {"method": "dopri5", "rtol": 1e-3}, 3.4),
+    (FREE, {"method": "dopri5", "rtol": 1e-6}, 4.1),
+    (FREE, {"method": "dop853", "rtol": 1e-3}, 2.3),
+    (FREE, {"method": "dop853", "rtol": 1e-3}, 3.1),
+]
+
+
+@pytest.mark.every_value("how")
+@pytest.mark.parametrize(("scene", "how", "t_end"), LEGS)
+def test_one_attempt_a_leg_is_the_same_run(scene, how, t_end):
+    start, once = ([0.4, 1.0], [3.0, -2.0]), {"max_steps": 1, "on_failure": "ignore"}
+    whole = pc.simulate(scene, (0, t_end), *start, **how)
+    longer = pc.simulate(scene, (0, t_end + 1), *start, **how)
+    assert whole.stats.limited_by_break > 2 or scene is FREE
+    sol = pc.simulate(scene, (0, t_end), *start, **once, **how)
     legs = 1
-    while sol.status == "max_steps" and legs < 10_000:
-        sol = sol.resume(1.0, max_steps=1, on_failure="ignore")
-        legs += 1
-    assert legs > 20
+    while sol.status == "max_steps":
+        assert legs < 10_000
+        if legs % 10 == 0 or scene is FREE:
+            assert differences(longer, sol.resume(t_end + 1)) == []
+        sol, legs = sol.resume(t_end, **once), legs + 1
+    assert legs > 20 or scene is FREE
+    assert scene is RUBBED or legs == whole.stats.accepted + whole.stats.rejected
     assert differences(whole, sol) == []
+
+
+FAST = fx.Motor(1, sinusoid=fx.Sinusoid(amplitude=1e243, angular_frequency=1e154))
+
+
+@pytest.mark.parametrize("store", ["steps", "dense"])
+@pytest.mark.parametrize("steps", [1, 3, 7, 20])
+@pytest.mark.parametrize(
+    "effects",
+    [[], [fx.Lock(1), FAST], [fx.DryJointFriction(2, coulomb=0.01)]],
+    ids=["free", "fast motor on a locked joint", "friction"],
+)
+def test_to_go_on_to_where_a_run_stands_is_to_stay_there(effects, steps, store):
+    """The time of the run has more digits than a double, and differs from `sol.t[-1]` by these."""
+    scene = FREE.replace(effects=effects)
+    start = ((1.0, 3.0), [1.0, 1.0], [0.0, 0.5])
+    how = {"method": "dopri5", "store": store}
+    whole = pc.simulate(scene, *start, **how)
+    sol = pc.simulate(scene, *start, max_steps=steps, on_failure="ignore", **how)
+    stays = sol.resume(sol.t[-1])
+    assert stays.status == "finished"
+    assert stays.t.tobytes() == sol.t.tobytes()
+    assert stays.y.tobytes() == sol.y.tobytes()
+    assert differences(whole, stays.resume(3.0)) == []
+
+
+def test_a_run_whose_contact_had_no_solution_does_not_go_on():
+    """A mass of 2e-308 leaves the torque that holds a joint without a finite value."""
+    links = [
+        pc.Link(mass=1.0, length=1.0),
+        pc.Link(mass=0.5, length=4.950390459371252),
+        pc.Link(mass=2.2250738585072014e-308, length=0.9054300677378225),
+        pc.Link.point_mass(mass=0.5398889769668388, length=0.6640109902174399),
+    ]
+    effects = [fx.DryJointFriction(joint=1, coulomb=5.9951481635280395), fx.Lock(joint=4)]
+    start = {
+        "q0": [-1.0, -2.937960905417783, 1e-9, 0.0],
+        "qd0": [0.5556183901582339, 0.0, 3.536705680691237, 3.536705680691237],
+        "t_span": (-0.8563206000640616, 0.0),
+        "on_failure": "ignore",
+    }
+    scene = pc.Scene(links=links, gravity=0.0, effects=effects)
+    whole = pc.simulate(scene, **start)
+    assert whole.status == "non_finite"
+    stopped = pc.simulate(scene, **start, max_steps=whole.stats.accepted)
+    assert stopped.status == "max_steps"
+    resumed = stopped.resume(0.0, max_steps=300, on_failure="ignore")
+    assert resumed.status == "non_finite"
+    assert resumed._run.t_reached == whole._run.t_reached
 
 
 @pytest.mark.parametrize("t_end", [4.0, -2.0])
 @pytest.mark.parametrize("cut", [0.3, 0.9, 0.99])
-def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(
-    cut: float, t_end: float
-) -> None:
+def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(cut, t_end):
     """All joints are locked, so that the drive's power alone knows that the spline has ended."""
     spline = fx.Spline(t=[-1.0, 1.0, 3.5], x=[0.1, -0.1, 0.1], y=[0.0] * 3)
-    scene = pc.Scene(
-        links=[pc.Link(mass=1.0, length=0.6)], effects=[fx.DrivenPivot(spline=spline), fx.Lock(1)]
-    )
+    scene = pc.Scene(links=LINKS, effects=[fx.DrivenPivot(spline=spline), fx.Lock(1)])
     with pytest.warns(pc.PendcoreWarning, match="its spline goes from"):
         whole = pc.simulate(scene, q0=1.0, t_span=(0, t_end), ledger=True, on_failure="ignore")
     with warnings.catch_warnings():
@@ -277,10 +226,10 @@ def test_a_ledger_does_not_go_on_without_the_spline_that_moves_the_pivot(
 class Raises:
     """A law that raises at one of its calls, once."""
 
-    def __init__(self, at: int) -> None:
+    def __init__(self, at):
         self.left = at
 
-    def __call__(self, t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+    def __call__(self, t, q, qd):
         self.left -= 1
         if self.left == 0:
             raise LookupError("once")
@@ -288,12 +237,10 @@ class Raises:
 
 
 @pytest.mark.parametrize("ledger", [False, True])
-def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(
-    ledger: bool, method: str
-) -> None:
+def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(ledger, method):
     """Also at a switch, where the law that follows is being looked for."""
 
-    def run(law: Raises) -> pc.Solution:
+    def run(law):
         scene = RUBBED.replace(effects=[*RUBBED.effects, fx.User(law)])
         try:
             return pc.simulate(scene, q0=[0.4, 1.0], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
@@ -301,7 +248,7 @@ def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(
             so_far = getattr(stop, "solution", None)
             return so_far.resume(1.0) if so_far else run(law)  # before there was a run
 
-    how: dict[str, Any] = {"method": method, "rtol": 1e-4, "ledger": ledger}
+    how = {"method": method, "rtol": 1e-4, "ledger": ledger}
     never = Raises(0)
     whole = run(never)
     calls = -never.left
@@ -316,44 +263,8 @@ def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(
     assert broken == {}
 
 
-def stopped(way: str, **how: Any) -> pc.Solution:
-    """Return a run that was stopped from outside, somewhere on its way."""
-
-    def raises(fraction: float) -> None:
-        raise LookupError("enough")
-
-    try:
-        if way == "Ctrl-C":
-            threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-        elif way == "progress":
-            how["progress"] = raises
-        else:
-            how |= {"time_limit": 0.1, "on_failure": "ignore"}
-        return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 3000.0), **how)
-    except (KeyboardInterrupt, LookupError) as stop:
-        return stop.solution  # type: ignore[union-attr]
-
-
-@pytest.mark.parametrize("way", ["Ctrl-C", "progress", "time_limit"])
-@pytest.mark.parametrize("compensated", [False, True])
-def test_a_run_that_was_stopped_from_outside_goes_on_the_same(way: str, compensated: bool) -> None:
-    how = {"max_step": 1e-3, "store": "end", "compensated": compensated}
-    begun = stopped(way, **how)
-    assert begun.status != "finished"
-    reached = float(begun.t[-1])
-    assert 0 < reached < 3000
-    whole = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, reached + 1.0), **how)
-    assert differences(whole, pickle.loads(pickle.dumps(begun)).resume(reached + 1.0)) == []
-
-
-BOUNCING = pc.Scene(
-    links=RUBBED.links,
-    effects=[
-        *RUBBED.effects,
-        fx.JointStop(1, range=(-0.3, 1.1), restitution=0.7),
-        fx.JointStop(2, range=(-0.6, 0.9)),
-    ],
-)
+STOPS = [fx.JointStop(1, (-0.3, 1.1), restitution=0.7), fx.JointStop(2, (-0.6, 0.9))]
+BOUNCING = RUBBED.replace(effects=[*RUBBED.effects, *STOPS])
 STIFF = BOUNCING.replace(effects=[*BOUNCING.effects, fx.ViscousJoint(2, damping=3e3)])
 WATCHED = [
     pc.events.LinkAngle(2, 0.8),
@@ -366,15 +277,10 @@ WATCHED = [
     ("scene", "cut"), [(BOUNCING, 0.53), (STIFF, 0.2639)], ids=["bouncing", "stiff"]
 )
 @pytest.mark.parametrize("method", [name for name in METHODS if METHODS[name]["error_order"]])
-def test_another_process_with_other_instructions_goes_on_the_same(
-    method: str, scene: pc.Scene, cut: float, tmp_path: Path
-) -> None:
-    how = {
-        "method": method, "rtol": 1e-6, "events": WATCHED, "ledger": True,
-        "compensated": METHODS[method]["compensates"],
-    }  # fmt: skip
-    whole = pc.simulate(scene, q0=[0.4, 0.9], qd0=[3.0, -2.0], t_span=(0, 1.0), **how)
-    begun = pc.simulate(scene, q0=[0.4, 0.9], qd0=[3.0, -2.0], t_span=(0, cut), **how)
+def test_another_process_with_other_instructions_goes_on_the_same(method, scene, cut, tmp_path):
+    how = {"method": method, "rtol": 1e-6, "events": WATCHED, "ledger": True}
+    how["compensated"] = METHODS[method]["compensates"]
+    whole, begun = (pc.simulate(scene, (0, t), [0.4, 0.9], [3.0, -2.0], **how) for t in (1.0, cut))
     assert whole.success
     bounces = [np.count_nonzero(np.diff(sol.t) == 0) for sol in (begun, whole)]
     assert 0 < bounces[0] < bounces[1]

@@ -1,223 +1,169 @@
-"""A command stopped while it writes leaves no partial file, and says which files are missing."""
+"""What stops a command while it writes leaves no partial file, and the missing ones are named."""
 
 from __future__ import annotations
 
 import errno
 import json
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.cli import main
+from matplotlib.figure import Figure
+from pendcore._cases.whole_file import whole_file
+from pendcore.cli import run
+from test_cli_streams import MAP
 
-SMALL = ["angles.png", "summary.json", "summary.txt"]
-FILES = [*SMALL[:1], "solution.npz", *SMALL[1:]]
+pytestmark = pytest.mark.usefixtures("folder")
+TEXTS = ["summary.txt", "summary.json"]
+FILES = sorted([*TEXTS, "solution.npz", "angles.png"])
+BOOK = pc.Case.textbook()
 STOPS = {
     "interrupted": KeyboardInterrupt(),
     "No space left on device": OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)),
-    "RuntimeError: out of order": RuntimeError("out of order"),
+    "RuntimeError: latex could not be found": RuntimeError("latex could not be found"),
 }
+FULL = STOPS["No space left on device"]
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: Any) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+def listed(folder="."):
+    return sorted(os.listdir(folder))
 
 
-def names(folder: str) -> list[str]:
-    return sorted(path.name for path in Path(folder).iterdir())
+def stop_at(monkeypatch, place, stop, after=0, most=np.inf):
+    """Let the disk be full, or a user lose patience, after some calls of a function."""
+    call, left = getattr(*place), after
 
-
-def stop_after(monkeypatch: Any, pieces: int, stop: BaseException) -> None:
-    """Let the disk be full, or a user lose patience, after some arrays of an archive."""
-    write = np.lib.format.write_array
-
-    def write_some(*args: Any, **named: Any) -> None:
-        nonlocal pieces
-        pieces -= 1
-        if pieces < 0:
+    def stopped(*args, **named):
+        nonlocal left
+        left -= 1
+        if -most <= left < 0:
             raise stop
-        write(*args, **named)
+        return call(*args, **named)
 
-    monkeypatch.setattr(np.lib.format, "write_array", write_some)
+    monkeypatch.setattr(*place, stopped)
 
 
+ARRAYS = (np.lib.format, "write_array")
+FIGURES = (Figure, "savefig")
+# For each the command, what stops after how many calls, the missing files, and the others.
+STOPPED = [
+    ("run short.toml --csv", ARRAYS, 3, ["solution.npz"], [*TEXTS, "angles.png", "states.csv"]),
+    ("run --csv", FIGURES, 0, ["angles.png"], [*TEXTS, "solution.npz", "states.csv"]),
+    ("run", (run, "facts"), 0, TEXTS, ["solution.npz", "angles.png"]),
+    ("run", (run, "text"), 0, TEXTS[:1], ["summary.json", "solution.npz", "angles.png"]),
+    ("map case.toml", FIGURES, 0, ["map.png"], ["summary.txt", "map.npz"]),
+    ("cost --methods dopri5 --repeats 1", FIGURES, 0, ["cost.png"], ["cost.txt", "cost.json"]),
+]
+
+
+@pytest.mark.every_value("row", "why")
+@pytest.mark.parametrize("row", STOPPED, ids=lambda row: f"{row[0]}: {row[3][0]}")
 @pytest.mark.parametrize("why", STOPS)
-def test_what_stops_the_archive_leaves_the_rest(why: str, monkeypatch: Any, capsys: Any) -> None:
-    stop_after(monkeypatch, 3, STOPS[why])
-    assert main(["run"]) == 1
-    out, err = capsys.readouterr()
-    assert names("out/textbook") == SMALL
-    assert err.splitlines() == [
-        f"out/textbook/solution.npz: not written: {why}",
-        "written to out/textbook: summary.txt, summary.json, angles.png",
-    ]
-    assert out == Path("out/textbook/summary.txt").read_text()
-
-
-def test_an_earlier_file_stays_whole_and_is_said_to_be_there(monkeypatch: Any, capsys: Any) -> None:
-    assert main(["run"]) == 0
-    earlier = Path("out/textbook/solution.npz").read_bytes()
-    stop_after(monkeypatch, 3, KeyboardInterrupt())
-    assert main(["run"]) == 1
-    said = "out/textbook/solution.npz: not written: interrupted; the earlier one is still there"
-    assert said in capsys.readouterr().err
-    assert Path("out/textbook/solution.npz").read_bytes() == earlier
-    assert names("out/textbook") == FILES
-
-
-@pytest.mark.parametrize(
-    ("stage", "missing"),
-    [
-        ("facts", ["summary.json", "summary.txt"]),
-        ("text", ["summary.txt"]),
-        ("save_figure", ["angles.png"]),
-    ],
-)
-@pytest.mark.parametrize("why", STOPS)
-def test_what_stops_another_file_leaves_the_archive(
-    stage: str, missing: list[str], why: str, monkeypatch: Any, capsys: Any
-) -> None:
-    def stopped(*_: Any, **__: Any) -> None:
-        monkeypatch.undo()
-        monkeypatch.chdir(here)
-        raise STOPS[why]
-
-    here = Path.cwd()
-    monkeypatch.setattr(f"pendcore.cli.run.{stage}", stopped)
-    assert main(["run"]) == 1
-    assert names("out/textbook") == [name for name in FILES if name not in missing]
-    err = capsys.readouterr().err
+def test_what_stops_a_file_is_named_and_leaves_the_others(row, why, monkeypatch, pendcore):
+    """A function of the command is stopped once: it is called again for what is printed."""
+    line, place, after, missing, others = row
+    Path("case.toml").write_text(BOOK.to_toml() + MAP)
+    Path("short.toml").write_text(BOOK.to_toml() + "max_steps = 5\n")
+    stop_at(monkeypatch, place, STOPS[why], after, most=1 if place[0] is run else np.inf)
+    status, out, err = pendcore(f"{line} -o o")
+    assert (status, listed("o")) == (1, sorted(others))
     for name in missing:
-        assert f"out/textbook/{name}: not written: {why}\n" in err
+        assert f"o/{name}: not written: {why}\n" in err
+    assert f"written to o: {', '.join(others)}\n" in err
+    assert ("the run is not complete: " in err) == ("short" in line)
+    assert "pc.load(" not in err  # what is missing is not offered
+    if "summary.txt" in others and line.startswith("run"):
+        assert out == Path("o/summary.txt").read_text()
 
 
-def test_where_nothing_can_be_written_no_folder_is_left(monkeypatch: Any, capsys: Any) -> None:
-    full = STOPS["No space left on device"]
+def test_a_report_is_written_without_the_figures_that_cannot_be_drawn(monkeypatch, pendcore):
+    stop_at(monkeypatch, FIGURES, STOPS["RuntimeError: latex could not be found"])
+    status, _, err = pendcore("derive --to report -o o")
+    assert (status, listed("o")) == (1, ["report.md"])
+    assert "mechanism.png is not written: latex could not be found" in err
+    monkeypatch.setattr("pendcore.derive.report.conversion.has_pandoc", lambda: False)
+    assert "these need pandoc" in pendcore("derive --to report -o o").err
 
-    def stopped(*_: Any, **__: Any) -> None:
-        raise full
 
-    stop_after(monkeypatch, 0, full)
-    monkeypatch.setattr(Path, "write_text", stopped)
-    monkeypatch.setattr("pendcore.cli.run.save_figure", stopped)
-    assert main(["run"]) == 1
-    out, err = capsys.readouterr()
+@pytest.mark.parametrize("line", ["plot run.npz", "show run.npz -o run.png"])
+def test_a_lone_figure_that_cannot_be_drawn_is_named(line, monkeypatch, pendcore):
+    BOOK.simulate().save("run.npz")
+    stop_at(monkeypatch, FIGURES, STOPS["RuntimeError: latex could not be found"])
+    why = "run.png: not written: RuntimeError: latex could not be found\n"
+    assert pendcore(line) == (1, "", f"pendcore {line[:4]}: {why}")
+    assert listed() == ["run.npz"]
+
+
+def test_an_earlier_file_stays_whole_and_is_said_to_be_there(monkeypatch, pendcore):
+    assert pendcore("run -o o").status == 0
+    earlier = Path("o/solution.npz").read_bytes()
+    with monkeypatch.context() as once:
+        stop_at(once, ARRAYS, KeyboardInterrupt(), 3)
+        status, _, err = pendcore("run -o o")
+    said = "o/solution.npz: not written: interrupted; the earlier one is still there"
+    assert (status, said in err, listed("o")) == (1, True, FILES)
+    stop_at(monkeypatch, ARRAYS, FULL, 3)
+    with pytest.raises(OSError, match=r"No space left on device: 'o/solution\.npz'"):
+        BOOK.simulate().save("o/solution.npz")
+    assert listed("o") == FILES
+    assert Path("o/solution.npz").read_bytes() == earlier
+
+
+def test_where_nothing_can_be_written_no_folder_is_left(monkeypatch, pendcore):
+    for place in ARRAYS, (Path, "write_text"), FIGURES:
+        stop_at(monkeypatch, place, FULL)
+    status, out, err = pendcore("run -o o")
+    assert (status, listed()) == (1, [])
     assert "largest reaction" in out  # the facts are told where they can be
-    assert "written to out/textbook: nothing\n" in err
-    assert names(".") == []
+    assert "written to o: nothing\n" in err
 
 
-def test_a_run_that_was_capped_does_not_offer_an_archive_that_is_missing(
-    monkeypatch: Any, capsys: Any
-) -> None:
-    Path("short.toml").write_text(pc.Case.textbook().to_toml() + "max_steps = 5\n")
-    stop_after(monkeypatch, 3, KeyboardInterrupt())
-    assert main(["run", "short.toml"]) == 1
-    err = capsys.readouterr().err
-    assert "the run is not complete: " in err
-    assert "pc.load(" not in err
-
-
-SLOWLY = """
-import sys, time
-import numpy as np
-from pendcore.cli import main
-write = np.lib.format.write_array
-def slowly(*args, **named):
-    time.sleep(0.1)
-    write(*args, **named)
-np.lib.format.write_array = slowly
-sys.exit(main(["run", "-o", "here"]))
-"""
-
-
-@pytest.mark.outside_build
-def test_ctrl_c_while_the_archive_is_written_keeps_the_small_files() -> None:
-    with subprocess.Popen(
-        [sys.executable, "-c", SLOWLY], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        while not [*Path().glob("here/solution*")]:
-            assert process.poll() is None
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert names("here") == SMALL
-    assert err.splitlines() == [
-        "here/solution.npz: not written: interrupted",
-        "written to here: summary.txt, summary.json, angles.png",
-    ]
-    assert out == Path("here/summary.txt").read_text()
-
-
-TOO_LARGE = """
+LIMITED = """
 import resource, sys
 from pendcore.cli import main
-resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
-sys.exit(main(sys.argv[1:]))
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
+sys.exit(main(sys.argv[2:]))
 """
 
 
 @pytest.mark.outside_build
-def test_a_file_that_the_system_cuts_short_is_named_and_gone() -> None:
-    command = [sys.executable, "-c", TOO_LARGE, "run", "-o", "here"]
+@pytest.mark.parametrize(
+    ("line", "limit", "lost", "left"),
+    [
+        ("run -o here", 150_000, "here/solution.npz", ["here", "run.npz"]),
+        ("plot run.npz -o a.pdf", 5_000, "a.pdf", ["run.npz"]),
+        ("plot run.npz -o a.svg", 5_000, "a.svg", ["run.npz"]),
+    ],
+)
+def test_a_file_that_the_system_cuts_short_is_named_and_gone(line, limit, lost, left):
+    BOOK.simulate().save("run.npz")
+    command = [sys.executable, "-c", LIMITED, str(limit), *line.split()]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert names("here") == SMALL
-    assert f"here/solution.npz: not written: {os.strerror(errno.EFBIG)}\n" in done.stderr
+    assert (done.returncode, listed()) == (1, left)
+    assert f"{lost}: not written: {os.strerror(errno.EFBIG)}\n" in done.stderr
+    assert left == ["run.npz"] or listed("here") == sorted([*TEXTS, "angles.png"])
 
 
-@pytest.mark.outside_build
-@pytest.mark.parametrize("suffix", ["pdf", "svg"])
-def test_a_figure_that_the_system_cuts_short_is_named_and_gone(suffix: str) -> None:
-    pc.Case.textbook().simulate().save("run.npz")
-    program = TOO_LARGE.replace("150_000", "5_000")
-    command = [sys.executable, "-c", program, "plot", "run.npz", "-o", f"figure.{suffix}"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert f"figure.{suffix}: not written: {os.strerror(errno.EFBIG)}\n" in done.stderr
-    assert names(".") == ["run.npz"]
-
-
-def test_a_save_that_fails_names_its_file_and_leaves_the_earlier_one(monkeypatch: Any) -> None:
-    solution = pc.Case.textbook().simulate()
-    solution.save("run.npz")
-    earlier = Path("run.npz").read_bytes()
-    stop_after(monkeypatch, 3, STOPS["No space left on device"])
-    with pytest.raises(OSError, match=r"No space left on device: 'run\.npz'"):
-        solution.save("run.npz")
-    assert names(".") == ["run.npz"]
-    assert Path("run.npz").read_bytes() == earlier
-
-
-def test_progress_of_a_save_goes_up_to_the_end() -> None:
-    told: list[float] = []
-    solution = pc.simulate(pc.Scene.textbook(), q0=[1, 2], t_span=(0, 50))
-    solution.save("run.npz", progress=told.append)
+def test_progress_of_a_save_goes_up_to_the_end():
+    told = []
+    pc.simulate(BOOK.scene, q0=[1, 2], t_span=(0, 50)).save("run.npz", progress=told.append)
     assert told == sorted(told)
-    assert told[0] < 0.1
-    assert told[-1] == 1.0
+    assert (told[0] < 0.1, told[-1]) == (True, 1.0)
 
 
-def test_an_archive_is_what_numpy_would_write() -> None:
-    solution = pc.Case.textbook().simulate()
-    solution.save("run.npz")
-    with np.load("run.npz") as file:
-        np.savez("numpy.npz", **dict(file))
-    assert Path("run.npz").stat().st_size == Path("numpy.npz").stat().st_size
+def test_much_to_write_is_told_beforehand(monkeypatch, pendcore):
+    monkeypatch.setattr(run, "_MANY_STEPS", 100)
+    _, out, err = pendcore("run --json")
+    steps = json.loads(out)["statistics"]["accepted"]
+    assert err.splitlines()[0] == f"writing {steps} steps to out/textbook"
 
 
-def test_a_file_behind_a_link_and_a_pipe_are_written_where_they_are() -> None:
-    solution = pc.Case.textbook().simulate()
+def test_a_file_behind_a_link_and_a_pipe_are_written_where_they_are():
+    solution = BOOK.simulate()
     Path("there").mkdir()
     Path("link.npz").symlink_to("there/run.npz")
     solution.save("link.npz")
@@ -227,9 +173,70 @@ def test_a_file_behind_a_link_and_a_pipe_are_written_where_they_are() -> None:
     assert not Path("/dev/null").is_file()
 
 
-def test_much_to_write_is_told_beforehand(monkeypatch: Any, capsys: Any) -> None:
-    monkeypatch.setattr("pendcore.cli.run._MANY_STEPS", 100)
-    assert main(["run", "--json"]) == 0
-    out, err = capsys.readouterr()
-    steps = json.loads(out)["statistics"]["accepted"]
-    assert err.splitlines()[0] == f"writing {steps} steps to out/textbook"
+def test_a_run_under_a_function_is_not_saved_and_says_how_to_keep_its_numbers():
+    scene = BOOK.scene.replace(effects=[pc.effects.User(lambda t, q, qd: 0 * q)])
+    sol = pc.simulate(scene, q0=1.0, t_span=(0, 1))
+    with pytest.raises(TypeError, match=r"cannot be saved: .*sol\.to_pandas\(\) or numpy\.savez\("):
+        sol.save("run.npz")
+    assert listed() == []
+
+
+# Threads that write to one path ------------------------------------------------------------------
+
+
+def short(**options):
+    return pc.simulate(BOOK.scene, q0=BOOK.q0, t_span=(0, 0.5), **options)
+
+
+def cost():
+    how = {"methods": "dopri5", "rtol": [1e-3], "repeats": 1}
+    return pc.accuracy_cost(BOOK.scene, q0=BOOK.q0, t_span=(0, 0.1), **how)
+
+
+WRITERS = {
+    "a.npz": lambda pendcore: short().save("a.npz"),
+    "a.html": lambda pendcore: short().to_html("a.html"),
+    "a.gif": lambda pendcore: short().to_video("a.gif", fps=4),
+    "a.json": lambda pendcore: cost().to_json("a.json"),
+    "all.npz": lambda pendcore: pc.ensemble(BOOK.scene, q0=[BOOK.q0] * 2, t_span=(0, 0.1)).save(
+        "all.npz"
+    ),
+    "a.png": lambda pendcore: pendcore("show -o a.png").status,
+    "RR.m": lambda pendcore: pendcore("derive --to octave -o RR.m").status,
+}
+
+
+@pytest.mark.every_value("name")
+@pytest.mark.parametrize("name", WRITERS)
+def test_whatever_is_written_has_a_name_of_its_own_until_it_is_whole(name, monkeypatch, pendcore):
+    under = []
+    replace = Path.replace
+
+    def watched(self, target):
+        under.append(self.name)
+        if len(under) == 3:
+            raise KeyboardInterrupt
+        return replace(self, target)
+
+    monkeypatch.setattr(Path, "replace", watched)
+    for _ in range(2):
+        WRITERS[name](pendcore)
+    assert len({*under}) == len(under) == 2
+    assert listed() == [name]
+    Path(name).unlink()
+    try:
+        ended = WRITERS[name](pendcore)
+    except KeyboardInterrupt:
+        ended = 1
+    assert (ended, listed()) == (1, [])  # Ctrl-C leaves nothing behind
+
+
+def test_two_writers_of_one_path_do_not_meet():
+    with whole_file("a.txt") as first:
+        first.write_text("first")
+        with whole_file("a.txt") as second:
+            second.write_text("second")
+        assert Path("a.txt").read_text() == "second"
+        assert first.read_text() == "first"
+    assert Path("a.txt").read_text() == "first"
+    assert listed() == ["a.txt"]

@@ -90,9 +90,11 @@ def _checked(found: Ensemble, on_failure: str) -> Ensemble:
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
     if on_failure == "raise":
-        error = RuntimeError(complaint)
-        hand_over(error, ensemble=found)
-        raise error
+        try:
+            raise RuntimeError(complaint)
+        except RuntimeError as error:
+            hand_over(error, ensemble=found)
+            raise
     try:
         warn(f"{complaint}; {REMEDY}")
     except PendcoreWarning as warning:
