@@ -50,13 +50,15 @@ def test_any_run_keeps_the_claims(claim: Claim, run: Drawn, data: st.DataObject)
 
 @given(
     run=motions(),
+    method=st.sampled_from(METHODS),
     shares=st.lists(st.floats(0, 1), min_size=1, max_size=8, unique=True).map(sorted),
     ledger=st.booleans(),
 )
-def test_being_watched_changes_no_bit(run: Drawn, shares: list[float], ledger: bool) -> None:
+def test_being_watched_changes_no_bit(run, method, shares, ledger) -> None:
     """A run takes the same steps sampled, stored in any form, with a ledger or a progress bar."""
+    run.options |= {"method": method}
     times = np.unique(np.array(shares) * run.t_span[1])
-    plain = run.simulate(store="steps")
+    plain, end = run.simulate(store="steps"), run.simulate(store="end")
     seen: list[float] = []
     sampled = run.simulate(t_eval=times, ledger=ledger, progress=seen.append)
     dense = run.simulate(ledger=not ledger)
@@ -64,7 +66,11 @@ def test_being_watched_changes_no_bit(run: Drawn, shares: list[float], ledger: b
     assert np.array_equal(dense.y, plain.y)
     assert np.array_equal(sampled.t, times)
     assert np.array_equal(sampled.y, dense(times))
-    assert np.array_equal(sampled._run.y_reached, plain.y[:, -1])
+    for other in (sampled, end):
+        assert np.array_equal(other._run.y_reached, plain.y[:, -1])
+    for other in (sampled, end, dense):
+        assert other.stats.accepted == plain.stats.accepted
+        assert other.stats.rejected == plain.stats.rejected
 
 
 def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
