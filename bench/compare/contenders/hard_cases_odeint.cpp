@@ -1,7 +1,6 @@
 // Boost.odeint on the hard cases, as an experienced user would write them: dopri5 with dense output
-// or integrate_adaptive, fehlberg78 for high accuracy, rosenbrock4 for stiff cases. The program is
-// called with the name of a case and numbers, and prints lines of a name and numbers.
-// bench/compare/hard_cases/ says what each case is about.
+// or integrate_adaptive, fehlberg78 for high accuracy, rosenbrock4 for stiff cases. A request is
+// the name of a case and numbers; bench/compare/hard_cases/ says what each case is about.
 // C++17, because Boost 1.74's ublas, which rosenbrock4 needs, uses what C++20 has removed.
 #include <algorithm>
 #include <array>
@@ -10,9 +9,6 @@
 #include <boost/numeric/ublas/vector.hpp>
 #include <boost/version.hpp>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <functional>
 #include <initializer_list>
 #include <map>
@@ -294,22 +290,15 @@ const std::map<std::string, void (*)(const Numbers&)> cases{{"held_rod", held_ro
 
 }  // namespace
 
-int main(int count, char** words) {
-  if (count == 2 && std::string(words[1]) == "version") {
-    tell(BOOST_LIB_VERSION, {});
-    return 0;
-  }
-  if (count < 2 || cases.count(words[1]) == 0) {
-    std::fprintf(stderr, "call: hard_cases_odeint CASE NUMBER...\n");
-    return 2;
-  }
-  Numbers numbers;
-  for (int k = 2; k < count; ++k) numbers.push_back(std::strtod(words[k], nullptr));
-  try {
-    cases.at(words[1])(numbers);
-  } catch (const std::exception& failure) {
-    std::fprintf(stderr, "%s\n", failure.what());
-    return 1;
-  }
-  return 0;
+int main() {
+  return contenders::converse([](std::istream& request) {
+    std::string word;
+    request >> word;
+    told.clear();
+    if (word == "version") return std::string(BOOST_LIB_VERSION ";");
+    Numbers numbers;
+    for (double number = 0; request >> number;) numbers.push_back(number);
+    cases.at(word)(numbers);
+    return told;
+  });
 }

@@ -3,17 +3,19 @@
 
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
-#include <cstdio>
+#include <string>
 #include <vector>
+
+#include "conversation.hpp"
 
 namespace hard_cases {
 
 using Numbers = std::vector<double>;
 
-inline void tell(const char* name, const Numbers& numbers) {
-  std::printf("%s", name);
-  for (const double number : numbers) std::printf(" %.17g", number);
-  std::printf("\n");
+// The answer to a request: names with their numbers, in front of a semicolon each.
+inline std::string told;
+inline void tell(const std::string& name, const Numbers& numbers) {
+  told += name + contenders::words(numbers) + ';';
 }
 
 template <class State>

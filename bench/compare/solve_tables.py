@@ -1,0 +1,273 @@
+"""Tables of solves: what accuracy costs on a case, on stiff scenes, and for many runs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from equal_error import (
+    DECADES,
+    OUTER_SIDES,
+    SIDES,
+    Contender,
+    Entrants,
+    Side,
+    compare,
+    curve,
+    on,
+    time_at,
+)
+from record import Point, Record
+from tables import NONE, WORDS, Rows, failures, listed, number, pair, power, short, table
+
+SHOWN_TOLERANCES = (1e-6, 1e-9)
+KINDS = ("minimum_us", "median_us")
+STIFF_ERRORS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+ENSEMBLE_ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
+ENSEMBLE_BARS = {"bare": "1/3", "damped": "1/2", "motor": "1/2", "three_links": "1/2"}
+
+
+def solves_of(record: Record) -> tuple[str, Entrants]:
+    """Return the one case of a record of solves, and who took part."""
+    (case,) = record.cases
+    return case, record.taking_part(case)
+
+
+def best_against_best(who: Entrants, side: Side, errors: Iterable[float] = DECADES) -> str:
+    """Tabulate, for each achieved error, the best of both sides and the goal.
+
+    Ratios are of minima, and of medians in parentheses.
+    """
+    compared = compare(who, side, errors)
+    if not compared:
+        return "Not measured: one of the two sides was not there.\n"
+    rows = []
+    for at in compared:
+        own, peer = at.own or (None, NONE), at.peer or (None, NONE)
+        if at.ratio is None:
+            found = "pendcore alone" if at.own else "peer alone" if at.peer else "nobody"
+        else:
+            found = pair(at.ratio, at.of_medians)
+        goal = f"{at.bar} {'reached' if at.reached else 'missed'}" if at.own or at.peer else NONE
+        sides = [cell for time, label in (own, peer) for cell in (short(label), number(time))]
+        rows.append([power(at.error), *sides, found, goal])
+    return table(
+        ["achieved error", "best of pendcore", "us", "best peer", "us", "ratio", "goal"], rows
+    )
+
+
+def sides(record: Record) -> str:
+    _, who = solves_of(record)
+    parts = (f"## Best against best, {one.title}\n\n{best_against_best(who, one)}" for one in SIDES)
+    return "\n".join(parts)
+
+
+def everybody(record: Record) -> str:
+    """Tabulate every contender's time at each decade of achieved error, side by side."""
+    _, who = solves_of(record)
+    parts = []
+    for side in SIDES:
+        rows = []
+        for one in (one for one in who if side.ours in one["sides"]):
+            least = min((error for error, _ in curve(one)), default=None)
+            times = [number(time_at(curve(one), error)) for error in DECADES]
+            rows.append([short(one["label"]), *times, power(least) if least else NONE])
+        header = ["us at an error of", *map(power, DECADES), "smallest error"]
+        if rows:
+            parts.append(f"{side.title}:\n\n{table(header, rows)}")
+    return "\n".join(parts)
+
+
+def at_tolerance(contender: Contender, tolerance: float) -> Point:
+    """Return the contender's point at rtol = atol = tolerance; empty if there is none."""
+    for point in contender["points"]:
+        if abs(point["setting"] / tolerance - 1) < 1e-9 and "failure" not in point:
+            return dict(point)
+    return {}
+
+
+def per_evaluation(point: Point) -> float | None:
+    """Divide the time of the whole call by its right-hand sides, in nanoseconds."""
+    evaluations = point.get("evaluations")
+    return 1e3 * point["minimum_us"] / evaluations if evaluations else None
+
+
+def tolerances(record: Record) -> str:
+    """Tabulate every contender that was tried with the shown tolerances."""
+    _, who = solves_of(record)
+    header = ["contender", "error", "at the end", "of energy", "right-hand sides"]
+    header += ["us", "median us", "ns a right-hand side"]
+    parts = []
+    for tolerance in SHOWN_TOLERANCES:
+        rows = []
+        for one in who:
+            point = at_tolerance(one, tolerance)
+            if one["setting"] == "tolerance" and point:
+                errors = [point.get(kind) for kind in ("error", "end_error", "energy_error")]
+                rows.append(
+                    [one["label"]]
+                    + [NONE if error is None else f"{error:.1e}" for error in errors]
+                    + [str(point.get("evaluations") or NONE)]
+                    + [number(point[kind]) for kind in KINDS]
+                    + [number(per_evaluation(point))]
+                )
+        parts.append(f"rtol = atol = {power(tolerance)}:\n\n{table(header, rows)}")
+    return "\n".join(parts)
+
+
+def fixed_cost(record: Record) -> str:
+    """Tabulate calls whose interval one step covers."""
+    calls = ((one["label"], one["one_step"]) for one in solves_of(record)[1])
+    rows = [
+        [label, str(call.get("evaluations") or NONE), *(number(call[kind]) for kind in KINDS)]
+        for label, call in calls
+        if call
+    ]
+    return table(["contender", "right-hand sides", "us", "median us"], rows)
+
+
+def losses(record: Record) -> str:
+    """Name, for each side, the errors where the best peer is quicker, and who gets further.
+
+    Then come the peers whose call of one step costs less than pendcore's cheapest.
+    """
+    _, who = solves_of(record)
+    lines, calls = [], []
+    for side in SIDES:
+        lost = [(at, short(at.peer[1])) for at in compare(who, side) if at.peer and at.lost]
+        slower = [f"{power(at.error)} ({who}: x {number(at.ratio)})" for at, who in lost if at.own]
+        alone = [f"{power(at.error)} ({who})" for at, who in lost if not at.own]
+        if slower:
+            lines.append(f"{side.title}: slower than the best peer at {', '.join(slower)}.")
+        if alone:
+            lines.append(f"{side.title}: does not get to {', '.join(alone)}.")
+        ours, peers = (
+            [(one["one_step"]["minimum_us"], one["label"]) for one in each if one["one_step"]]
+            for each in (on(who, side.ours, ours=True), on(who, side.peers, ours=False))
+        )
+        least = min(ours, default=(0.0, ""))[0]
+        cheaper = [f"{short(label)} {number(time)} us" for time, label in peers if time < least]
+        if cheaper:
+            calls.append(
+                f"{side.title}: a call of one step costs {number(least)} us or more, and less "
+                f"with {', '.join(cheaper)}."
+            )
+    return listed(lines + calls, otherwise="Nowhere among these contenders, 1e-2 to 1e-13.")
+
+
+def case(record: Record) -> str:
+    return solves_of(record)[0]
+
+
+def about(record: Record) -> str:
+    ((name, facts),) = record.cases.items()
+    known = f"The reference is good to {facts['uncertainty']:.0e} of the length"
+    return f"{WORDS['about'][name]} {known}; {facts['times']} times are compared."
+
+
+def failed(record: Record) -> str:
+    return listed(f"{line}." for line in failures(record, case(record)))
+
+
+def stiff_scene(record: Record, case: str) -> str:
+    """Tabulate best against best, steps and times of everybody, and quote dopri5's last words."""
+    who, facts = record.taking_part(case), record.cases[case]
+    parts = [f"## {facts['label']}\n"]
+    parts += [f"Reference good to {facts['uncertainty']:.0e} of the length.\n"]
+    for side in OUTER_SIDES:
+        if compare(who, side, STIFF_ERRORS):
+            parts += [f"Best against best, {side.title}:\n"]
+            parts += [best_against_best(who, side, STIFF_ERRORS)]
+    rows = [
+        [
+            one["label"],
+            *(
+                " / ".join(
+                    number(time_at(curve(one, kind), error)) for kind in ("steps", "minimum_us")
+                )
+                for error in STIFF_ERRORS
+            ),
+        ]
+        for one in who
+        if "compiled_v3" not in one["sides"]
+    ]
+    parts += [table(["steps / us at an error of", *map(power, STIFF_ERRORS)], rows)]
+    points = record.points("pendcore_dopri5", case)
+    words = [point.get("failure") or point.get("said") or "" for point in points]
+    spoken = [each for each in words if each and not each.startswith("not run")]
+    return "\n".join([*parts, f"> dopri5: {spoken[-1]}\n" if spoken else ""])
+
+
+def stiff_scenes(record: Record) -> str:
+    return "\n".join(stiff_scene(record, case) for case in record.cases)
+
+
+def stiff_failures(record: Record) -> str:
+    return listed(f"{line}. ({case})" for case in record.cases for line in failures(record, case))
+
+
+def members(record: Record) -> str:
+    return str(next(iter(record.cases.values()))["members"])
+
+
+def known(record: Record) -> str:
+    return str(next(iter(record.cases.values()))["known"])
+
+
+def ensemble_best(record: Record, case: str) -> Rows:
+    """Compare the best of pendcore with the best of heyoka at each error."""
+    found = []
+    for error in ENSEMBLE_ERRORS:
+        sides: list[Any] = []
+        for ours in (True, False):
+            times = [
+                (time, one["label"])
+                for one in record.taking_part(case)
+                if one["ours"] == ours and (ours or "heyoka" in one["label"])
+                if (time := time_at(curve(one), error)) is not None
+            ]
+            sides.append(min(times, default=None))
+        own, peer = sides
+        cells = [
+            cell for one in sides for cell in ((one[1], number(one[0])) if one else (NONE,) * 2)
+        ]
+        ratio = number(own[0] / peer[0]) if own and peer else NONE
+        found.append([power(error), *cells, f"**{ratio}**", ENSEMBLE_BARS[case]])
+    return found
+
+
+def ensemble_scenes(record: Record) -> str:
+    parts = []
+    for case, facts in record.cases.items():
+        header = ["median error", "pendcore", "us", "heyoka", "us", "ratio", "bar"]
+        rows = [
+            [
+                facts_of["label"],
+                *(
+                    number(time_at(curve({"points": record.points(name, case)}), error))
+                    for error in ENSEMBLE_ERRORS
+                ),
+            ]
+            for name, facts_of in record.contenders.items()
+        ]
+        parts += [f"## {facts['label'][0].upper()}{facts['label'][1:]}\n"]
+        parts += [table(header, ensemble_best(record, case))]
+        parts += ["Everybody, us a trajectory at an error of:\n"]
+        parts += [table(["", *map(power, ENSEMBLE_ERRORS)], rows)]
+    return "\n".join(parts)
+
+
+def ensemble_threads(record: Record) -> str:
+    case = next(iter(record.cases))
+    gains = [row[0]["gain"] for who in ("ensemble", "loops") if (row := record.points(who, case))]
+    if len(gains) < 2:
+        return "Not measured."
+    ensemble, loops = gains
+    told = (
+        f"Two threads make the ensemble {ensemble:.2f} times as fast as one. Two "
+        f"processes of a bare loop were {loops:.2f} times as fast as one in the same run: "
+        f"the gain of the ensemble is {ensemble / loops:.2f} times that of the loops."
+    )
+    if ensemble > loops:
+        told += " The loops are a yardstick of the machine at that moment, not a bound."
+    return told
