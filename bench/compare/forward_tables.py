@@ -89,30 +89,21 @@ def exponent(times: Mapping[int, float]) -> float | None:
 
 def growth(record: Record) -> str:
     """Say with what power of n the time grows."""
-    times = of_links(record, CORE, "minimum_ns")
-    found = exponent(times)
-    if found is None:
-        return ""
-    return (
-        f"From n = {GROWTH_FROM} to {max(times)} pendcore's time grows with n to the power "
-        f"{found:.2f}."
-    )
+    found = exponent(of_links(record, CORE, "minimum_ns"))
+    return NONE if found is None else f"{found:.2f}"
 
 
-def everybody(record: Record) -> str:
-    return of_everybody(record, "minimum_ns", a_link=False)
+def longest(record: Record) -> str:
+    return str(max(of_links(record, CORE, "minimum_ns"), default=NONE))
 
 
-def memory(record: Record) -> str:
-    return of_everybody(record, "bytes", a_link=True)
-
-
-def of_everybody(record: Record, metric: str, *, a_link: bool) -> str:
+def everybody(record: Record, metric: str) -> str:
+    """Tabulate times, or bytes a link, of all contenders."""
     columns = {name: of_links(record, name, metric) for name in record.contenders}
     rows: Rows = []
     for n in lengths(record):
         values = (column.get(n) for column in columns.values())
-        rows.append([str(n), *(number(x / n if x and a_link else x) for x in values)])
+        rows.append([str(n), *(number(x / n if x and metric == "bytes" else x) for x in values)])
     return table(["n", *(facts["label"] for facts in record.contenders.values())], rows)
 
 
@@ -220,20 +211,18 @@ def promised(record: Record) -> str:
     return table([*header, "in a step", "verdict"], rows)
 
 
+BARE_COUNTS = (STEP, "pendcore_kernel", "one_effect_more")
+
+
+def bare_count(record: Record, contender: str) -> str:
+    found = point(record, contender, BARE).get("instructions")
+    return NONE if found is None else f"{found:.1f}"
+
+
 def absent_effects(record: Record) -> str:
-    """Say what the bare scene executes, and what it would execute without any effects."""
-    scene, kernel, longer = (
-        point(record, who, BARE).get("instructions")
-        for who in (STEP, "pendcore_kernel", "one_effect_more")
-    )
-    if scene is None or kernel is None or longer is None:
-        return "Not counted."
-    return (
-        f"A right-hand side of the bare scene executes {scene:.1f} instructions within a step,\n"
-        f"and the kernel that is named by its type and knows of no effect executes {kernel:.1f}.\n"
-        f"In a core with one law more in its list the bare scene executes {longer:.1f}: "
-        f"{'kept' if scene == kernel == longer else '**missed**'}."
-    )
+    """Say whether the bare scene executes what it would without any effects."""
+    counts = {point(record, who, BARE).get("instructions") for who in BARE_COUNTS}
+    return "not counted" if None in counts else "kept" if len(counts) == 1 else "**missed**"
 
 
 def effect_losses(record: Record) -> str:

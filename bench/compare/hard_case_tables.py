@@ -143,12 +143,10 @@ def losses(record: Record) -> str:
     return listed(lines, otherwise="Nowhere.")
 
 
-def missing(template: Path, root: Path) -> list[str]:
+def missing(template: Path, tests: Path) -> list[str]:
     """List the tests that the page names and that are not there."""
     table_of_tests = template.read_text(encoding="utf-8").partition("| case | test |")[2]
     named = [each.split("::") for each in table_of_tests.split("`")[1::2]]
-    return [
-        f"{file}::{test}"
-        for file, test in named
-        if not (root / file).exists() or f"def {test}(" not in (root / file).read_text("utf-8")
-    ]
+    sources = {file: tests / file for file, _ in named}
+    known = {file: path.read_text("utf-8") for file, path in sources.items() if path.exists()}
+    return [f"{file}::{test}" for file, test in named if f"def {test}(" not in known.get(file, "")]

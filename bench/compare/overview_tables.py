@@ -71,20 +71,14 @@ def ratios(records: Records) -> str:
 
 
 def narrow(records: Records) -> str:
-    """Say what pendcore loses without AVX-512, and where the figures with AVX-512 come from."""
+    """Say what pendcore loses without AVX-512."""
     found = [
         held_back.own[0] / wide.own[0]
         for who in known(records).values()
         for wide, held_back in zip(*(compare(who, side) for side in SIDES[:2]), strict=False)
         if wide.own and held_back.own
     ]
-    if not found:
-        return "pendcore's best times use no AVX-512 here, or were measured with one set alone."
-    return (
-        "pendcore chose its kernels for x86-64-v4 (AVX-512). Held back to x86-64-v3, its best\n"
-        f"method takes {min(found):.2f} to {max(found):.2f} times as long; the pages of the cases "
-        "have the\ntables. In both comparisons the peers keep the processor's own instructions."
-    )
+    return f"{min(found):.2f} to {max(found):.2f}" if found else NONE
 
 
 def losses(records: Records) -> str:

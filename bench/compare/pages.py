@@ -1,6 +1,7 @@
 """THE writer: a page is a template of prose, in which names in braces stand for tables.
 
-A name is that of a function of the page's module, or of tables.py, which is given the record.
+A name is that of a function of the page's module, or of tables.py, which is given the record, and
+the second word in the braces if there is one.
 """
 
 from __future__ import annotations
@@ -56,11 +57,12 @@ def filled(template: str, module: ModuleType, record: Record | Mapping[str, Reco
     """Return the template with its tables."""
 
     def table(found: re.Match[str]) -> str:
-        function: Any = getattr(module, found[1], None) or getattr(tables, found[1])
-        return str(function(record))
+        name, argument = found.groups()
+        function: Any = getattr(module, name, None) or getattr(tables, name)
+        return str(function(record, argument) if argument else function(record))
 
     text = (TEMPLATES / f"{template}.md").read_text(encoding="utf-8")
-    return re.sub(r"\{(\w+)\}", table, text)
+    return re.sub(r"\{(\w+)(?: (\w+))?\}", table, text)
 
 
 def page(stem: str, record: Record) -> str:

@@ -160,9 +160,11 @@ def case(record: Record) -> str:
 
 
 def about(record: Record) -> str:
-    ((name, facts),) = record.cases.items()
-    known = f"The reference is good to {facts['uncertainty']:.0e} of the length"
-    return f"{WORDS['about'][name]} {known}; {facts['times']} times are compared."
+    return str(WORDS["about"][case(record)])
+
+
+def uncertainty(record: Record) -> str:
+    return power(record.cases[case(record)]["uncertainty"])
 
 
 def failed(record: Record) -> str:
@@ -204,14 +206,6 @@ def stiff_scenes(record: Record) -> str:
 
 def stiff_failures(record: Record) -> str:
     return listed(f"{line}. ({case})" for case in record.cases for line in failures(record, case))
-
-
-def members(record: Record) -> str:
-    return str(next(iter(record.cases.values()))["members"])
-
-
-def known(record: Record) -> str:
-    return str(next(iter(record.cases.values()))["known"])
 
 
 def ensemble_best(record: Record, case: str) -> Rows:
@@ -257,17 +251,12 @@ def ensemble_scenes(record: Record) -> str:
     return "\n".join(parts)
 
 
-def ensemble_threads(record: Record) -> str:
-    case = next(iter(record.cases))
-    gains = [row[0]["gain"] for who in ("ensemble", "loops") if (row := record.points(who, case))]
-    if len(gains) < 2:
-        return "Not measured."
-    ensemble, loops = gains
-    told = (
-        f"Two threads make the ensemble {ensemble:.2f} times as fast as one. Two "
-        f"processes of a bare loop were {loops:.2f} times as fast as one in the same run: "
-        f"the gain of the ensemble is {ensemble / loops:.2f} times that of the loops."
-    )
-    if ensemble > loops:
-        told += " The loops are a yardstick of the machine at that moment, not a bound."
-    return told
+def gain_of(record: Record, what: str) -> str:
+    """Return the gain of two threads or processes over one."""
+    rows = record.points(what, next(iter(record.cases)))
+    return f"{rows[0]['gain']:.2f}" if rows else NONE
+
+
+def gain_over_loops(record: Record) -> str:
+    gains = [row["gain"] for what in ("ensemble", "loops") for row in record.points(what, "bare")]
+    return f"{gains[0] / gains[1]:.2f}" if len(gains) == 2 else NONE

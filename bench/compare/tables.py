@@ -58,8 +58,13 @@ def made(record: Record) -> str:
     )
 
 
-def rounds(record: Record) -> str:
-    return str(record.measured["rounds"])
+def measured(record: Record, what: str) -> str:
+    return str(record.measured[what])
+
+
+def fact(record: Record, what: str) -> str:
+    """Return a fact of the first case."""
+    return str(next(iter(record.cases.values()))[what])
 
 
 def who(record: Record) -> str:

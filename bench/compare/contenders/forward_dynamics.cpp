@@ -41,53 +41,42 @@ Scene read_scene(std::istream& in) {
   return scene;
 }
 
-class PreparedCalls : public Prepared {
- public:
-  PreparedCalls(const PrepareCalls& prepare, const Scene& scene) {
-    const std::size_t before = bytes_in_use();
-    calls_ = prepare(scene);
-    bytes_ = bytes_in_use() - before;
-  }
-
-  std::string burst(double seconds) override {
-    Calls& calls = *calls_;
-    const auto begin = Clock::now();
-    double taken = seconds_of(calls, count_ > 0 ? count_ : 1);  // warms up
-    for (int count = 1; count_ == 0; count *= 2) {
-      taken = seconds_of(calls, count);
-      if (taken >= batch_seconds) count_ = count;
-    }
-    std::string line;
-    char word[40];
-    do {
-      taken = seconds_of(calls, count_) / (count_ * calls.right_hand_sides());
-      std::snprintf(word, sizeof word, "%.4g ", 1e9 * taken);
-      line += word;
-    } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
-    return line;
-  }
-
-  std::string tell(const std::string& word, std::istream& rest) override {
-    if (word == "accelerations") return words(calls_->accelerations());
-    if (word == "bytes") return std::to_string(bytes_);
-    if (word != "make") throw std::invalid_argument("no such request: " + word);
-    calls_->make(static_cast<int>(read_count(rest)));
-    return std::to_string(calls_->right_hand_sides());
-  }
-
- private:
-  std::unique_ptr<Calls> calls_;
-  std::size_t bytes_ = 0;
-  int count_ = 0;  // in a batch
-};
-
 }  // namespace
+
+std::string Calls::burst(double seconds) {
+  const auto begin = Clock::now();
+  double taken = seconds_of(*this, count_ > 0 ? count_ : 1);  // warms up
+  for (int count = 1; count_ == 0; count *= 2) {
+    taken = seconds_of(*this, count);
+    if (taken >= batch_seconds) count_ = count;
+  }
+  std::string line;
+  char word[40];
+  do {
+    taken = seconds_of(*this, count_) / (count_ * right_hand_sides());
+    std::snprintf(word, sizeof word, "%.4g ", 1e9 * taken);
+    line += word;
+  } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
+  return line;
+}
+
+std::string Calls::tell(const std::string& word, std::istream& rest) {
+  if (word == "accelerations") return words(accelerations());
+  if (word == "bytes") return std::to_string(bytes);
+  if (word != "make") throw std::invalid_argument("no such request: " + word);
+  make(static_cast<int>(read_count(rest)));
+  return std::to_string(right_hand_sides());
+}
 
 Contender forward_dynamics(std::string name, std::string label, std::string about,
                            PrepareCalls prepare) {
   return {std::move(name), std::move(label), std::move(about),
           [prepare = std::move(prepare)](std::istream& in) -> std::unique_ptr<Prepared> {
-            return std::make_unique<PreparedCalls>(prepare, read_scene(in));
+            const Scene scene = read_scene(in);
+            const std::size_t before = bytes_in_use();
+            std::unique_ptr<Calls> calls = prepare(scene);
+            calls->bytes = bytes_in_use() - before;
+            return calls;
           }};
 }
 

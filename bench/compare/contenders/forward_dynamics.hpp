@@ -30,12 +30,18 @@ struct Scene {
   std::size_t states() const { return q.size() / n(); }
 };
 
-class Calls {
+class Calls : public Prepared {
  public:
-  virtual ~Calls() = default;
+  std::string burst(double seconds) final;
+  std::string tell(const std::string& word, std::istream& rest) final;
+  std::size_t bytes = 0;  // of the heap, held since the preparation
+
   virtual void make(int count) = 0;                 // timed; each call waits for the one before
   virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
   virtual double right_hand_sides() { return 1; }   // in one call
+
+ private:
+  int count_ = 0;  // calls in a batch
 };
 
 using PrepareCalls = std::function<std::unique_ptr<Calls>(const Scene&)>;

@@ -20,48 +20,40 @@ Case read_case(std::istream& in) {
   return given;
 }
 
-class PreparedRun : public Prepared {
- public:
-  explicit PreparedRun(std::unique_ptr<Run> run) : run_(std::move(run)) {}
-
-  std::string burst(double seconds) override {
-    using Clock = std::chrono::steady_clock;
-    std::vector<long long> taken;
-    const auto begin = Clock::now();
-    for (;;) {
-      const auto before = Clock::now();
-      run_->solve();
-      const auto after = Clock::now();
-      taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
-      if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
-    }
-    std::string line;
-    for (std::size_t i = taken.size() > 1 ? 1 : 0; i < taken.size(); ++i)
-      line += std::to_string(taken[i]) + ' ';
-    return line;
-  }
-
-  std::string tell(const std::string& word, std::istream& /*rest*/) override {
-    if (word != "outcome") throw std::invalid_argument("no such request: " + word);
-    run_->solve();
-    const auto states = run_->states();
-    if (states.empty()) return "failed " + run_->failure();
-    const std::string found = words({states.begin(), states.end()});
-    const Counts counted = run_->counts();
-    return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) + found;
-  }
-
- private:
-  std::unique_ptr<Run> run_;
-};
-
 }  // namespace
+
+std::string Run::burst(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<long long> taken;
+  const auto begin = Clock::now();
+  for (;;) {
+    const auto before = Clock::now();
+    solve();
+    const auto after = Clock::now();
+    taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
+    if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
+  }
+  std::string line;
+  for (std::size_t i = taken.size() > 1 ? 1 : 0; i < taken.size(); ++i)
+    line += std::to_string(taken[i]) + ' ';
+  return line;
+}
+
+std::string Run::tell(const std::string& word, std::istream& /*rest*/) {
+  if (word != "outcome") throw std::invalid_argument("no such request: " + word);
+  solve();
+  const auto found = states();
+  if (found.empty()) return "failed " + failure();
+  const std::string numbers = words({found.begin(), found.end()});
+  const Counts counted = counts();
+  return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) + numbers;
+}
 
 Contender solver(std::string name, std::string label, std::string about, PrepareRun prepare) {
   return {std::move(name), std::move(label), std::move(about),
           [prepare = std::move(prepare)](std::istream& in) -> std::unique_ptr<Prepared> {
             const double setting = read_number(in);
-            return std::make_unique<PreparedRun>(prepare(read_case(in), setting));
+            return prepare(read_case(in), setting);
           }};
 }
 

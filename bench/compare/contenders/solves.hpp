@@ -31,9 +31,11 @@ struct Counts {
 
 // A case at a setting: a tolerance, both relative and absolute, or a fixed step in s. `solve` is
 // timed; states, counts and the failure may be asked for afterwards.
-class Run {
+class Run : public Prepared {
  public:
-  virtual ~Run() = default;
+  std::string burst(double seconds) final;
+  std::string tell(const std::string& word, std::istream& rest) final;
+
   virtual void solve() = 0;
   virtual std::span<const double> states()
       const = 0;  // row-major, times x 2n; empty if the solve failed

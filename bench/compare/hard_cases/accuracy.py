@@ -12,7 +12,7 @@ import numpy as np
 from mpmath import ellipk, mp, mpf, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, UPRIGHT, Array, G, Motion, Scene, ask, two_rods
+from hard_cases.programs import HANGING, UPRIGHT, Array, G, Motion, Odeint, Scene, two_rods
 
 
 class Drift(Scene):
@@ -48,9 +48,9 @@ class Drift(Scene):
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         return self.judged(self.by_mujoco(dt, integrator, each=round(self.times[1] / dt)))
 
-    def odeint(self, order: int, rtol: float, atol: float) -> Outcome:
-        told = ask("drift", order, rtol, atol, *self.start, *self.times)
-        return self.judge(np.reshape(told["states"], (-1, 4)), "integrate_times")
+    def odeint(self, method: str, rtol: float, atol: float) -> Outcome:
+        task = Odeint("textbook", (), method, atol, rtol, 1e-3, (*self.start, *self.speeds))
+        return self.judge(task.states(self.times), "integrate_times")
 
 
 class ShakenPivot(Scene):
@@ -116,13 +116,18 @@ class ShakenPivot(Scene):
 
     def mujoco(self, steps: int) -> Outcome:
         def after() -> float:
-            found = self.by_mujoco(self.span[1] / steps, "RK4", each=steps)
-            return float(found.y[-1, 0] - UPRIGHT)
+            dt = self.span[1] / steps
+            return float(self.by_mujoco(dt, "RK4", each=steps, qpos=self.small).raw[0][-1])
 
         return self.sought(after)
 
     def odeint(self) -> Outcome:
-        return self.sought(lambda: ask("shaken", self.eps, self.w, self.small)["q"][0])
+        def after() -> float:
+            parameters, start = (G, self.eps, self.w), (self.small, 0.0)
+            task = Odeint("shaken", parameters, "dopri5", 1e-17, 1e-12, 1e-3, start)
+            return float(task.end(self.span)[1][0])
+
+        return self.sought(after)
 
 
 class Upright(Scene):
@@ -187,7 +192,9 @@ class Upright(Scene):
         return self.judge(float(motion.t[k] - dt * (off[k] - 1) / (off[k] - off[k - 1])))
 
     def odeint(self, rtol: float, atol: float) -> Outcome:
-        return self.judge(ask("upright", self.start[0], UPRIGHT, rtol, atol)["t"][0])
+        start = (*self.start, *self.speeds)
+        task = Odeint("textbook", (), "dopri5", atol, rtol, 1e-4, start)
+        return self.judge(task.ask("fallen", UPRIGHT, self.span[1])["t"][0])
 
 
 class Separatrix(Scene):
@@ -220,7 +227,10 @@ class Separatrix(Scene):
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         steps = round(self.span[1] / dt)
-        return self.judged(self.by_mujoco(dt, integrator, each=steps, fitted=True))
+        how = {"each": steps, "fitted": True, "qpos": self.amplitude}
+        return self.judge(self.by_mujoco(dt, integrator, **how).raw[0][-1])
 
     def odeint(self) -> Outcome:
-        return self.judge(ask("separatrix", self.amplitude, self.span[1])["q"][0])
+        start = (self.amplitude, 0.0)
+        task = Odeint("pendulum", [G], "dopri5", 1e-14, 1e-12, 1e-3, start)
+        return self.judge(task.end(self.span)[1][0])

@@ -10,7 +10,7 @@ import numpy as np
 from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Array, Motion, Scene, ask
+from hard_cases.programs import HANGING, Array, Motion, Odeint, Scene
 
 
 class Bounces(Scene):
@@ -114,7 +114,8 @@ class Bounces(Scene):
         return self.judge(float(q[-1]), last, more, motion.at(self.traced)[:, 0])
 
     def odeint(self) -> Outcome:
-        told = ask("bounces")
+        task = Odeint("constant", [-self.pressing], "dopri5", 1e-13, 1e-11, 0.0, (*self.start, 0.0))
+        told = task.ask("bounces", self.span[1], self.restitution, self.capture)
         return self.judge(told["q"][0], told["t"][0] if told["t"][0] > 0 else None)
 
 
@@ -194,4 +195,6 @@ class TwoRoots(Scene):
         return self.judge(times, motion.t)
 
     def odeint(self, longest: float = 1e9) -> Outcome:
-        return self.judge(ask("two_roots", self.span[1], longest)["t"], ())
+        start = (-self.amplitude, 0.0)
+        task = Odeint("pendulum", [self.gravity], "dopri5", 1e-12, 1e-9, 1e-3, start)
+        return self.judge(task.ask("passages", self.mark, longest, self.span[1])["t"], ())

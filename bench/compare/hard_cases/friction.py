@@ -14,7 +14,7 @@ from mpmath import mp, mpf
 from stick_slip import DIGITS, Hum, slides
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Array, G, Motion, Scene, ask
+from hard_cases.programs import HANGING, Array, G, Motion, Odeint, Scene
 
 # MuJoCo's friction at its hardest, with a time constant in s.
 STIFF_FRICTION = {"solimpfriction": "0.9999 0.9999 0.001", "solreffriction": "{} 1"}
@@ -74,7 +74,9 @@ class HeldRod(Scene):
         return self.moved(rate * self.span[1], more, traced)
 
     def odeint(self) -> Outcome:
-        return self.moved(ask("held_rod")["q"][0] - self.start[0])
+        parameters = (self.friction, 1e-6, self.weight)
+        task = Odeint("held", parameters, "rosenbrock4", 1e-12, 1e-8, 1e-6, (*self.start, 0.0))
+        return self.moved(task.end(self.span)[1][0] - self.start[0])
 
     def reference(self) -> dict[str, list[float]]:
         return {"t": self.traced.tolist()}
@@ -156,8 +158,10 @@ class StickSlip(Scene):
         return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
 
     def odeint(self) -> Outcome:
-        told = ask("stick_slip", self.resting)
-        return self.judge(told["end"][0], told["rest"][0])
+        parameters = (self.friction, 1e-4, self.bias, self.amplitude)
+        task = Odeint("hum", parameters, "rosenbrock4", 1e-10, 1e-7, 1e-6, (0.0, 0.0))
+        resting, end = task.states([self.resting, self.span[1]])
+        return self.judge(end[0], resting[1])
 
 
 class TwoJoints(Scene):
@@ -230,7 +234,9 @@ class TwoJoints(Scene):
         return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
 
     def odeint(self) -> Outcome:
-        states = np.reshape(ask("two_joints", *self.times)["states"], (-1, 4))
+        parameters, start = (*self.friction, 1e-3, self.amplitude), (*self.start, 0.0, 0.0)
+        task = Odeint("loaded", parameters, "rosenbrock4", 1e-10, 1e-8, 1e-6, start)
+        states = task.states(self.times)
 
         def at(t: Any) -> Array:
             return np.array([np.interp(t, self.times, column) for column in states.T]).T

@@ -125,10 +125,12 @@ class Scene:
 
     def by_mujoco(
         self, dt: float, integrator: str = "implicitfast", *, watched: bool = False,
-        each: int = 1, fitted: bool = False, seconds: float | None = None, **joint: Any,
+        each: int = 1, fitted: bool = False, seconds: float | None = None,
+        qpos: Any = None, **joint: Any,
     ) -> Motion:  # fmt: skip
         """Step through the span, or some seconds of it, and keep every so many states.
 
+        `qpos` are the joints' angles at the start to the last bit; `raw` has what became of them.
         `fitted` makes the step a part of the span. With `watched` the user has disabled MuJoCo's
         restart from the start, and looks for warnings after each step; others see them at the end.
         """
@@ -139,7 +141,8 @@ class Scene:
         model = self.model(seconds / steps if fitted else dt, integrator, **joint)
         data = mujoco.MjData(model)
         data.time = self.span[0]
-        data.qpos[:], data.qvel[:] = self.joints(self.start), self.joints(self.speeds, rates=True)
+        data.qpos[:] = self.joints(self.start) if qpos is None else qpos
+        data.qvel[:] = self.joints(self.speeds, rates=True)
         if type(self).torque is not Scene.torque:
             mujoco.set_mjcb_control(lambda _, d: d.ctrl.fill(self.torque(d.time)))
         if type(self).couple is not Scene.couple:
@@ -165,7 +168,7 @@ class Scene:
         y = self.angles(np.array(columns))
         return Motion(
             t=t, y=y.T, at=lambda s: np.array([np.interp(s, t, column) for column in y]).T,
-            words=warned or f"{steps} steps", success=not warned,
+            words=warned or f"{steps} steps", success=not warned, raw=columns,
         )  # fmt: skip
 
     def model(self, dt: float, integrator: str, **joint: Any) -> Any:
@@ -191,21 +194,52 @@ class Scene:
         q, qd = np.cumsum(q, axis=0), np.cumsum(qd, axis=0)
         return np.vstack([HANGING - q, -qd] if self.hanging else [UPRIGHT + q, qd])
 
-    def odeint(self, *request: Any, **_: Any) -> Outcome:
+    def odeint(self, **how: Any) -> Outcome:
         raise NotImplementedError
 
 
-def ask(case: str, *numbers: float) -> dict[str, list[float]]:
-    """Ask Boost.odeint's program for a case, and return the numbers of its answer by name."""
+@dataclass(frozen=True, slots=True)
+class Odeint:
+    """A task of Boost.odeint's program: equations by name, parameters, method, start (q, qd)."""
+
+    system: str
+    parameters: Sequence[float]
+    method: str
+    atol: float
+    rtol: float
+    first_step: float
+    start: Sequence[float]
+
+    def ask(self, word: str, *numbers: float) -> dict[str, list[float]]:
+        """Return the numbers of the answer by name."""
+        task = f"{self.system} {listed(self.parameters)} {self.method}"
+        settings = words([self.atol, self.rtol, self.first_step])
+        return ask(f"{word} {task} {settings} {listed(self.start)} {words(numbers)}")
+
+    def end(self, span: Sequence[float]) -> tuple[float, Array, str]:
+        """Return the last time, the last state, and the steps in words."""
+        told = self.ask("integrate", *span)
+        return told["t"][0], np.array(told["y"]), f"{told['steps'][0]:.0f} steps"
+
+    def states(self, times: Sequence[float] | Array) -> Array:
+        told = self.ask("states", len(times), *times)
+        return np.reshape(told["states"], (-1, len(self.start)))
+
+
+def listed(numbers: Sequence[float]) -> str:
+    return f"{len(numbers)} {words(numbers)}"
+
+
+def ask(request: str) -> dict[str, list[float]]:
+    """Ask Boost.odeint's program, and return the numbers of its answer by name."""
     path = find_executable("hard_cases_odeint", "HARD_CASES_ODEINT")
-    request = f"{case} {words(numbers)}\n"
-    done = subprocess.run([path], input=request, capture_output=True, text=True, check=False)
+    done = subprocess.run([path], input=f"{request}\n", capture_output=True, text=True, check=False)
     if done.returncode in {-signal.SIGXCPU, -signal.SIGKILL}:
         raise NoReturn
     verdict, _, answer = done.stdout.strip().partition(" ")
     if verdict != "ok":
         raise RuntimeError(answer or f"ended with {done.returncode}")
-    found = (one.split() for one in answer.split(";") if one.strip())
+    found = (one.split() for one in answer.split(";"))
     return {name: [float(number) for number in numbers] for name, *numbers in found}
 
 
