@@ -9,12 +9,7 @@ from typing import Any
 from record import Point, Record
 from tables import listed, table
 
-PROGRAMS = {
-    "pendcore": "pendcore",
-    "scipy": "SciPy",
-    "mujoco": "MuJoCo",
-    "odeint": "Boost.odeint",
-}
+PROGRAMS = {"pendcore": "pendcore", "scipy": "SciPy", "mujoco": "MuJoCo", "odeint": "Boost.odeint"}
 Case = dict[str, Any]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from equal_error import (
     DECADES,
@@ -18,7 +17,7 @@ from equal_error import (
     time_at,
 )
 from record import Point, Record
-from tables import NONE, WORDS, Rows, failures, listed, number, pair, power, short, table
+from tables import NONE, WORDS, failures, listed, number, pair, power, short, table
 
 SHOWN_TOLERANCES = (1e-6, 1e-9)
 KINDS = ("minimum_us", "median_us")
@@ -62,17 +61,23 @@ def sides(record: Record) -> str:
     return "\n".join(parts)
 
 
+def at_errors(
+    one: Contender, errors: Iterable[float], kinds: Iterable[str] = KINDS[:1]
+) -> list[str]:
+    """Return a contender's costs at each error."""
+    curves = [curve(one, kind) for kind in kinds]
+    return [" / ".join(number(time_at(each, error)) for each in curves) for error in errors]
+
+
 def everybody(record: Record) -> str:
     """Tabulate every contender's time at each decade of achieved error, side by side."""
-    _, who = solves_of(record)
-    parts = []
+    header, parts = ["us at an error of", *map(power, DECADES), "smallest error"], []
     for side in SIDES:
         rows = []
-        for one in (one for one in who if side.ours in one["sides"]):
+        for one in (one for one in solves_of(record)[1] if side.ours in one["sides"]):
             least = min((error for error, _ in curve(one)), default=None)
-            times = [number(time_at(curve(one), error)) for error in DECADES]
-            rows.append([short(one["label"]), *times, power(least) if least else NONE])
-        header = ["us at an error of", *map(power, DECADES), "smallest error"]
+            last = power(least) if least else NONE
+            rows.append([short(one["label"]), *at_errors(one, DECADES), last])
         if rows:
             parts.append(f"{side.title}:\n\n{table(header, rows)}")
     return "\n".join(parts)
@@ -181,15 +186,7 @@ def stiff_scene(record: Record, case: str) -> str:
             parts += [f"Best against best, {side.title}:\n"]
             parts += [best_against_best(who, side, STIFF_ERRORS)]
     rows = [
-        [
-            one["label"],
-            *(
-                " / ".join(
-                    number(time_at(curve(one, kind), error)) for kind in ("steps", "minimum_us")
-                )
-                for error in STIFF_ERRORS
-            ),
-        ]
+        [one["label"], *at_errors(one, STIFF_ERRORS, ("steps", "minimum_us"))]
         for one in who
         if "compiled_v3" not in one["sides"]
     ]
@@ -208,44 +205,23 @@ def stiff_failures(record: Record) -> str:
     return listed(f"{line}. ({case})" for case in record.cases for line in failures(record, case))
 
 
-def ensemble_best(record: Record, case: str) -> Rows:
-    """Compare the best of pendcore with the best of heyoka at each error."""
-    found = []
-    for error in ENSEMBLE_ERRORS:
-        sides: list[Any] = []
-        for ours in (True, False):
-            times = [
-                (time, one["label"])
-                for one in record.taking_part(case)
-                if one["ours"] == ours and (ours or "heyoka" in one["label"])
-                if (time := time_at(curve(one), error)) is not None
-            ]
-            sides.append(min(times, default=None))
-        own, peer = sides
-        cells = [
-            cell for one in sides for cell in ((one[1], number(one[0])) if one else (NONE,) * 2)
-        ]
-        ratio = number(own[0] / peer[0]) if own and peer else NONE
-        found.append([power(error), *cells, f"**{ratio}**", ENSEMBLE_BARS[case]])
-    return found
-
-
 def ensemble_scenes(record: Record) -> str:
+    """Compare the best of pendcore with the best of heyoka at each error, then everybody."""
+    header = ["median error", "pendcore", "us", "heyoka", "us", "ratio", "bar"]
     parts = []
     for case, facts in record.cases.items():
-        header = ["median error", "pendcore", "us", "heyoka", "us", "ratio", "bar"]
+        who = record.taking_part(case)
+        both = [one for one in who if one["ours"] or "heyoka" in one["label"]]
+        best = []
+        for at in compare(both, OUTER_SIDES[1], ENSEMBLE_ERRORS):
+            own, peer = at.own or (None, NONE), at.peer or (None, NONE)
+            cells = [cell for time, label in (own, peer) for cell in (label, number(time))]
+            best.append([power(at.error), *cells, f"**{number(at.ratio)}**", ENSEMBLE_BARS[case]])
         rows = [
-            [
-                facts_of["label"],
-                *(
-                    number(time_at(curve({"points": record.points(name, case)}), error))
-                    for error in ENSEMBLE_ERRORS
-                ),
-            ]
-            for name, facts_of in record.contenders.items()
+            [each["label"], *at_errors({"points": record.points(name, case)}, ENSEMBLE_ERRORS)]
+            for name, each in record.contenders.items()
         ]
-        parts += [f"## {facts['label'][0].upper()}{facts['label'][1:]}\n"]
-        parts += [table(header, ensemble_best(record, case))]
+        parts += [f"## {facts['label'][0].upper()}{facts['label'][1:]}\n", table(header, best)]
         parts += ["Everybody, us a trajectory at an error of:\n"]
         parts += [table(["", *map(power, ENSEMBLE_ERRORS)], rows)]
     return "\n".join(parts)

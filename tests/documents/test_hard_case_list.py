@@ -41,8 +41,13 @@ def test_the_written_page_is_what_the_record_says_of_the_contenders_that_there_a
 
 def record(loop_not_run: Any = (), **outcomes: tuple[float | None, bool]) -> Record:
     facts = {
-        "title": "One case", "scene": "a", "answer": "b", "unit": "rad", "allowed": 1e-9,
-        "figure": "", "loop_not_run": loop_not_run,
+        "title": "One case",
+        "scene": "a",
+        "answer": "b",
+        "unit": "rad",
+        "allowed": 1e-9,
+        "figure": "",
+        "loop_not_run": loop_not_run,
     }
     rows = [
         {"contender": name, "case": "one", "setting": "so", "said": "c", "own_loop": False}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from math import cos, pi, sin
 from typing import Any
@@ -12,7 +12,8 @@ import numpy as np
 from mpmath import ellipk, mp, mpf, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, UPRIGHT, Array, G, Motion, Odeint, Scene, two_rods
+from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene
+from hard_cases.rods import Array, G, two_rods
 
 
 class Drift(Scene):
@@ -22,6 +23,7 @@ class Drift(Scene):
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 2000.0)
     times = np.linspace(0, span[1], 201)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
+    system = ("textbook", ())
 
     def energy(self, states: Any) -> Array:
         """Return the energy, J, in states (..., 4)."""
@@ -48,9 +50,8 @@ class Drift(Scene):
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         return self.judged(self.by_mujoco(dt, integrator, each=round(self.times[1] / dt)))
 
-    def odeint(self, method: str, rtol: float, atol: float) -> Outcome:
-        task = Odeint("textbook", (), method, atol, rtol, 1e-3, (*self.start, *self.speeds))
-        return self.judge(task.states(self.times), "integrate_times")
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judge(self.by_odeint(times=self.times, **how).y, "integrate_times")
 
 
 class ShakenPivot(Scene):
@@ -65,7 +66,7 @@ class ShakenPivot(Scene):
     mass, gravity, hanging = 1.0, G, False
     eps = 0.2  # m; the rod has 1 m
     small = 1e-5  # rad from upright; the nonlinear part is its square, relatively
-    start = (UPRIGHT + small,)
+    zero, start = UPRIGHT, (small,)
 
     @property
     def border(self) -> float:
@@ -82,7 +83,7 @@ class ShakenPivot(Scene):
     def reference(self) -> dict[str, list[float]]:
         return {"w": [self.border]}
 
-    def sought(self, angle_after: Callable[[], float]) -> Outcome:
+    def sought(self, after: Callable[[], Motion]) -> Outcome:
         """Seek the frequency at which a small angle is the same again after a period of the drive.
 
         The equation is even in time. Therefore the trace of the map over a period is twice the
@@ -92,7 +93,7 @@ class ShakenPivot(Scene):
 
         def grown(w: float) -> float:
             self.w, self.span = w, (0.0, 2 * pi / w)
-            return angle_after() / self.small - 1
+            return float(after().y[-1, 0]) / self.small - 1
 
         w = brentq(grown, 0.9 * self.border, 1.1 * self.border, xtol=1e-13)
         return Outcome(error=abs(w / self.border - 1), said=f"stands from {w:.10f} rad/s on")
@@ -101,33 +102,28 @@ class ShakenPivot(Scene):
         shaking = fx.Sinusoid(amplitude=self.eps, angular_frequency=self.w, phase=pi / 2)
         return [fx.DrivenPivot(y=shaking)]
 
+    @property
+    def system(self) -> tuple[str, Sequence[float]]:  # type: ignore[override]
+        return "shaken", (G, self.eps, self.w)
+
     def pendcore(self, **how: Any) -> Outcome:
-        return self.sought(lambda: self.by_pendcore(**how, store="end").y[-1, 0] - UPRIGHT)
+        return self.sought(lambda: self.by_pendcore(**how, store="end"))
 
     def rates(self, t: float, y: Array) -> tuple[float, float]:
         return y[1], 1.5 * (G - self.eps * self.w**2 * cos(self.w * t)) * sin(y[0])
 
     def scipy(self, **how: Any) -> Outcome:
-        return self.sought(lambda: self.by_scipy([self.small, 0.0], **how).y[-1, 0])
+        return self.sought(lambda: self.by_scipy(**how))
 
     def couple(self, data: Any) -> Any:
         """Return the torque of the pivot's acceleration, in the frame of the pivot."""
         return -0.5 * self.eps * self.w**2 * cos(self.w * data.time) * sin(data.qpos[0])
 
     def mujoco(self, steps: int) -> Outcome:
-        def after() -> float:
-            dt = self.span[1] / steps
-            return float(self.by_mujoco(dt, "RK4", each=steps, qpos=self.small).raw[0][-1])
+        return self.sought(lambda: self.by_mujoco(self.span[1] / steps, "RK4", each=steps))
 
-        return self.sought(after)
-
-    def odeint(self) -> Outcome:
-        def after() -> float:
-            parameters, start = (G, self.eps, self.w), (self.small, 0.0)
-            task = Odeint("shaken", parameters, "dopri5", 1e-17, 1e-12, 1e-3, start)
-            return float(task.end(self.span)[1][0])
-
-        return self.sought(after)
+    def odeint(self, **how: Any) -> Outcome:
+        return self.sought(lambda: self.by_odeint(**how))
 
 
 class Upright(Scene):
@@ -136,6 +132,7 @@ class Upright(Scene):
     links, mass, gravity, hanging = 2, 1.0, G, False
     start, speeds, span = (UPRIGHT + 1e-9,) * 2, (0.0, 0.0), (0.0, 6.0)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
+    system = ("textbook", ())
 
     @cache  # noqa: B019
     def fall_time(self) -> float:
@@ -191,10 +188,8 @@ class Upright(Scene):
         k = int(np.argmax(off > 1))
         return self.judge(float(motion.t[k] - dt * (off[k] - 1) / (off[k] - off[k - 1])))
 
-    def odeint(self, rtol: float, atol: float) -> Outcome:
-        start = (*self.start, *self.speeds)
-        task = Odeint("textbook", (), "dopri5", atol, rtol, 1e-4, start)
-        return self.judge(task.ask("fallen", UPRIGHT, self.span[1])["t"][0])
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judge(self.task(**how).ask("fallen", UPRIGHT, self.span[1])["t"][0])
 
 
 class Separatrix(Scene):
@@ -202,7 +197,8 @@ class Separatrix(Scene):
 
     mass, gravity = 1.0, G
     amplitude = float(2 * np.arcsin(0.999999))
-    start = (HANGING - amplitude,)
+    zero, sign, start = HANGING, -1.0, (amplitude,)
+    system = ("pendulum", [G])
     with mp.workdps(30):
         modulus = mpmath.sin(mpf(amplitude) / 2)
         span = (0.0, float(4 * ellipk(modulus**2) * sqrt(2 / (3 * mpf(G)))))
@@ -211,26 +207,14 @@ class Separatrix(Scene):
     def numbers(self) -> dict[str, float]:
         return {"period": self.span[1]}
 
-    def judge(self, angle: float) -> Outcome:
-        """Judge how far the rod is from its start after a period."""
-        off = abs(angle - self.amplitude)
-        return Outcome(error=off, said=f"{off:.1e} rad off after a period")
-
     def judged(self, motion: Motion) -> Outcome:
-        return self.judge(HANGING - motion.y[-1, 0])
+        """Judge how far the rod is from its start after a period."""
+        off = float(abs(motion.y[-1, 0] - self.amplitude))
+        return Outcome(error=off, said=f"{off:.1e} rad off after a period")
 
     def rates(self, t: float, y: Array) -> list[float]:
         return [y[1], -1.5 * G * np.sin(y[0])]
 
-    def scipy(self, **how: Any) -> Outcome:
-        return self.judge(self.by_scipy([self.amplitude, 0.0], **how).y[-1, 0])
-
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         steps = round(self.span[1] / dt)
-        how = {"each": steps, "fitted": True, "qpos": self.amplitude}
-        return self.judge(self.by_mujoco(dt, integrator, **how).raw[0][-1])
-
-    def odeint(self) -> Outcome:
-        start = (self.amplitude, 0.0)
-        task = Odeint("pendulum", [G], "dopri5", 1e-14, 1e-12, 1e-3, start)
-        return self.judge(task.end(self.span)[1][0])
+        return self.judged(self.by_mujoco(dt, integrator, each=steps, fitted=True))

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import Array, G, Motion, Odeint, Scene, two_rods
-
-NO_WORD = "returns without a word"
+from hard_cases.programs import Motion, Scene
+from hard_cases.rods import Array, G, two_rods
 
 
 class Ending(Scene):
@@ -44,11 +43,16 @@ class Ending(Scene):
         words = "starts again from the start, with a line on stderr" if again else "goes on"
         return self.judge(t, q, words, says=False)
 
+    def odeint(self, **how: Any) -> Outcome:
+        motion = self.by_odeint(**how)
+        return self.judge(motion.t[-1], motion.y[-1, 0], "returns without a word", says=False)
+
 
 class NotANumber(Ending):
     """A couple of the user's own that is no number beyond an angle, which is reached at 0.5 s."""
 
     span = (0.0, 2.0)
+    system = ("square_root", ())
 
     def law(self, q: Any) -> Any:
         with np.errstate(invalid="ignore"):
@@ -63,16 +67,12 @@ class NotANumber(Ending):
     def couple(self, data: Any) -> Any:
         return self.law(data.qpos)
 
-    def odeint(self) -> Outcome:
-        task = Odeint("square_root", (), "dopri5", 1e-10, 1e-6, 0.01, (0.0, 1.0))
-        t, y, _ = task.end(self.span)
-        return self.judge(t, y[0], NO_WORD, says=False)
-
 
 class BlowUp(Ending):
     """Damping of the wrong sign, w' = w^3: the rate is infinite after a finite time."""
 
     near = 1e-3
+    system = ("cubic", ())
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -90,10 +90,6 @@ class BlowUp(Ending):
     def couple(self, data: Any) -> Any:
         return data.qvel**3
 
-    def odeint(self) -> Outcome:
-        task = Odeint("cubic", (), "dopri5", 1e-10, 1e-6, 0.01, (0.0, 1.0))
-        return self.judge(task.end(self.span)[0], 0.0, NO_WORD, says=False)
-
 
 class LateStart(Scene):
     """A start so late that a step does not change the time."""
@@ -102,6 +98,7 @@ class LateStart(Scene):
     start, speeds = (0.3, 0.3), (0.0, 0.0)
     span = (1e17, 1e17 + 160)  # ten units in the last place
     rates = staticmethod(two_rods(of=np))  # type: ignore[assignment]
+    system = ("textbook", ())
 
     def pendcore(self, **how: Any) -> Outcome:
         found = self.by_pendcore(**how).raw
@@ -121,8 +118,8 @@ class LateStart(Scene):
         said = f"moves on for 10 s while its clock goes by {gone:g} s, no warning"
         return Outcome(said=said, right=False)
 
-    def odeint(self) -> Outcome:
-        start = (*self.start, *self.speeds)
-        t, y, steps = Odeint("textbook", (), "dopri5", 1e-10, 1e-6, 0.01, start).end(self.span)
-        ended = f"returns after {steps} at t0 + {t - self.span[0]:g} s"
-        return Outcome(said=f"{ended}, q = {y[0]:.3g} rad, without a word", right=False)
+    def odeint(self, **how: Any) -> Outcome:
+        motion = self.by_odeint(**how)
+        ended = f"returns after {motion.words} at t0 + {motion.t[-1] - self.span[0]:g} s"
+        said = f"{ended}, q = {motion.y[-1, 0]:.3g} rad, without a word"
+        return Outcome(said=said, right=False)

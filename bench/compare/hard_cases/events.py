@@ -10,13 +10,15 @@ import numpy as np
 from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Array, Motion, Odeint, Scene
+from hard_cases.programs import HANGING, Motion, Scene
+from hard_cases.rods import Array
 
 
 class Bounces(Scene):
     """A rod pressed against a stop, with bounces that accumulate and end."""
 
     pressing, restitution, capture = 2.0, 0.8, 1e-9
+    system = ("constant", [-pressing])
     start, span = (0.4,), (0.0, 8.0)
     first = float(np.sqrt(2 * pressing * start[0]))  # speed of the first impact
     t_last = first / pressing * (1 + 2 * restitution / (1 - restitution))
@@ -113,8 +115,8 @@ class Bounces(Scene):
         more = f" (as far as the rate is below 1e-3 rad/s); first rise {rise:+.1%}"
         return self.judge(float(q[-1]), last, more, motion.at(self.traced)[:, 0])
 
-    def odeint(self) -> Outcome:
-        task = Odeint("constant", [-self.pressing], "dopri5", 1e-13, 1e-11, 0.0, (*self.start, 0.0))
+    def odeint(self, **how: Any) -> Outcome:
+        task = self.task(**how, first_step=0.0)
         told = task.ask("bounces", self.span[1], self.restitution, self.capture)
         return self.judge(told["q"][0], told["t"][0] if told["t"][0] > 0 else None)
 
@@ -125,7 +127,8 @@ class TwoRoots(Scene):
     gravity, amplitude, swings = 9.81, 1.0, 50
     mark = 0.99999  # rad from the vertical
     shown = 25.0  # ms; the figure shows this much before and after a turn
-    start = (HANGING + amplitude,)
+    zero, sign, start = HANGING, -1.0, (-amplitude,)
+    system = ("pendulum", [gravity])
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -183,18 +186,16 @@ class TwoRoots(Scene):
         return [y[1], -1.5 * self.gravity * np.sin(y[0])]  # from the vertical
 
     def scipy(self, **how: Any) -> Outcome:
-        how |= {"start": [-self.amplitude, 0.0], "events": lambda _, y: y[0] - self.mark}
-        return self.judged(self.by_scipy(**how))
+        return self.judged(self.by_scipy(events=lambda _, y: y[0] - self.mark, **how))
 
     def mujoco(self, dt: float, **how: Any) -> Outcome:
         """Compare the signs of successive steps, and interpolate."""
         motion = self.by_mujoco(dt, **how)
-        past = (HANGING - motion.y[:, 0]) - self.mark
+        past = motion.y[:, 0] - self.mark
         after = np.flatnonzero(past[:-1] * past[1:] < 0) + 1
         times = motion.t[after] - dt * past[after] / (past[after] - past[after - 1])
         return self.judge(times, motion.t)
 
-    def odeint(self, longest: float = 1e9) -> Outcome:
-        start = (-self.amplitude, 0.0)
-        task = Odeint("pendulum", [self.gravity], "dopri5", 1e-12, 1e-9, 1e-3, start)
-        return self.judge(task.ask("passages", self.mark, longest, self.span[1])["t"], ())
+    def odeint(self, longest: float = 1e9, **how: Any) -> Outcome:
+        told = self.task(**how).ask("passages", self.mark, longest, self.span[1])
+        return self.judge(told["t"], ())

@@ -14,7 +14,8 @@ from mpmath import mp, mpf
 from stick_slip import DIGITS, Hum, slides
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Array, G, Motion, Odeint, Scene
+from hard_cases.programs import HANGING, Motion, Scene
+from hard_cases.rods import Array, G
 
 # MuJoCo's friction at its hardest, with a time constant in s.
 STIFF_FRICTION = {"solimpfriction": "0.9999 0.9999 0.001", "solreffriction": "{} 1"}
@@ -33,6 +34,7 @@ class HeldRod(Scene):
     weight = 1.5 * 9.81
     friction = float(2 * weight * np.cos(start[0]))
     joint = f'frictionloss="{friction!r}"'
+    system = ("held", [friction, 1e-6, weight])
     traced = np.geomspace(1e-2, span[1], 161)  # s, for the figure
 
     def effects(self, fx: Any) -> list[Any]:
@@ -73,10 +75,8 @@ class HeldRod(Scene):
         more = f" (its rate after {seconds:.0f} s, times 1e6 s)"
         return self.moved(rate * self.span[1], more, traced)
 
-    def odeint(self) -> Outcome:
-        parameters = (self.friction, 1e-6, self.weight)
-        task = Odeint("held", parameters, "rosenbrock4", 1e-12, 1e-8, 1e-6, (*self.start, 0.0))
-        return self.moved(task.end(self.span)[1][0] - self.start[0])
+    def odeint(self, **how: Any) -> Outcome:
+        return self.moved(self.by_odeint(**how).y[-1, 0] - self.start[0])
 
     def reference(self) -> dict[str, list[float]]:
         return {"t": self.traced.tolist()}
@@ -89,6 +89,7 @@ class StickSlip(Scene):
     turn = 2 * np.pi / frequency
     span = (0.0, stairs * turn)  # it ends within a rest
     joint = f'frictionloss="{friction}"'
+    system = ("hum", [friction, 1e-4, bias, amplitude])
 
     def torque(self, t: Any) -> Any:
         return self.bias + self.amplitude * np.sin(self.frequency * t)
@@ -157,11 +158,8 @@ class StickSlip(Scene):
     def mujoco(self, dt: float, constant: float | None = None, **how: Any) -> Outcome:
         return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
 
-    def odeint(self) -> Outcome:
-        parameters = (self.friction, 1e-4, self.bias, self.amplitude)
-        task = Odeint("hum", parameters, "rosenbrock4", 1e-10, 1e-7, 1e-6, (0.0, 0.0))
-        resting, end = task.states([self.resting, self.span[1]])
-        return self.judge(end[0], resting[1])
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judged(self.by_odeint(times=[self.resting, self.span[1]], **how))
 
 
 class TwoJoints(Scene):
@@ -178,6 +176,7 @@ class TwoJoints(Scene):
     times = np.linspace(0, span[1], 361)[1:]
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=G)
     joint = 'frictionloss="1"'
+    system = ("loaded", [*friction, 1e-3, amplitude])
 
     def motor(self, t: float) -> Array:
         return np.array([self.amplitude * np.sin(self.frequency * t), 0.0])
@@ -233,12 +232,5 @@ class TwoJoints(Scene):
     def mujoco(self, dt: float, constant: float | None = None, **how: Any) -> Outcome:
         return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
 
-    def odeint(self) -> Outcome:
-        parameters, start = (*self.friction, 1e-3, self.amplitude), (*self.start, 0.0, 0.0)
-        task = Odeint("loaded", parameters, "rosenbrock4", 1e-10, 1e-8, 1e-6, start)
-        states = task.states(self.times)
-
-        def at(t: Any) -> Array:
-            return np.array([np.interp(t, self.times, column) for column in states.T]).T
-
-        return self.judged(Motion(t=self.times, y=states, at=at, words=""))
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judged(self.by_odeint(times=self.times, **how))

@@ -11,7 +11,8 @@ from hybrid_chain import extrapolated_step
 from mpmath import mp, mpf, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Array, G, Motion, Odeint, Scene, mujoco_rods, two_rods
+from hard_cases.programs import HANGING, Motion, Scene
+from hard_cases.rods import Array, G, mujoco_rods, two_rods
 
 
 class KnownEnd(Scene):
@@ -43,6 +44,7 @@ class StiffDamper(KnownEnd):
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 5.0)
     damping = 1e5  # N m s at joint 2; over its moment of inertia, about 0.08, it is 1e6 a second
     rates = staticmethod(two_rods(damping=damping))  # type: ignore[assignment]
+    system = ("loaded", [damping])
 
     def effects(self, fx: Any) -> list[Any]:
         return [fx.ViscousJoint(joint=2, damping=self.damping)]
@@ -77,12 +79,6 @@ class StiffDamper(KnownEnd):
         found = self.by_mujoco(dt, integrator, each=steps)
         return self.judge(found.y[-1, :2], f"{steps} steps")
 
-    def odeint(self) -> Outcome:
-        start = (*self.start, *self.speeds)
-        task = Odeint("loaded", [self.damping], "rosenbrock4", 1e-10, 1e-8, 1e-6, start)
-        _, y, steps = task.end(self.span)
-        return self.judge(y[:2], steps)
-
 
 class Payload(KnownEnd):
     """The textbook's two rods with a million times their mass at the tip.
@@ -93,15 +89,16 @@ class Payload(KnownEnd):
     """
 
     links, mass, gravity, speeds = 2, 1.0, G, (0.0, 0.0)
+    zero = HANGING
     ratio, amplitude = 1e6, 1e-4
+    system = ("payload", [ratio])
     steps = 40_000  # of the reference; half as many move the end by 3e-10 rad
     rates = staticmethod(two_rods(ratio, from_hanging=True))  # type: ignore[assignment]
 
     def __init__(self) -> None:
         (slow, of_slow), (fast, of_fast) = self.modes()
         self.span = (0.0, float(2 * mp.pi / slow))
-        self.from_hanging = [self.amplitude * float(x) for x in (2, of_slow + of_fast)]
-        self.start = tuple(HANGING + np.array(self.from_hanging))
+        self.start = tuple(self.amplitude * float(x) for x in (2, of_slow + of_fast))
         self.faster = float(fast / slow)
 
     @property
@@ -133,7 +130,7 @@ class Payload(KnownEnd):
 
     @cache  # noqa: B019
     def end(self) -> list[float]:
-        y = np.array([*self.from_hanging, 0.0, 0.0])
+        y = np.array([*self.start, *self.speeds])
         for _ in range(self.steps):
             y = extrapolated_step(self.hamilton, 0.0, y, self.span[1] / self.steps)
         found: list[float] = y[:2].tolist()
@@ -146,10 +143,7 @@ class Payload(KnownEnd):
         motion = self.by_pendcore(**how, store="end")
         if not motion.success:
             return Outcome(said=motion.words, right=False)
-        return self.judge(motion.y[-1, :2] - HANGING, motion.words)
-
-    def scipy(self, **how: Any) -> Outcome:
-        return self.judged(self.by_scipy([*self.from_hanging, 0.0, 0.0], **how))
+        return self.judged(motion)
 
     def model(self, dt: float, integrator: str, **_: Any) -> Any:
         return mujoco_rods(
@@ -159,18 +153,11 @@ class Payload(KnownEnd):
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         steps = round(self.span[1] / dt)
-        qpos = np.diff(self.from_hanging, prepend=0.0)
-        motion = self.by_mujoco(dt, integrator, each=steps, fitted=True, qpos=qpos)
+        motion = self.by_mujoco(dt, integrator, each=steps, fitted=True)
         if not motion.success:
             said = "diverges, starts again from hanging, with a line on stderr"
             return Outcome(said=said, right=False)
-        return self.judge(np.cumsum([angle[-1] for angle in motion.raw[:2]]), motion.words)
-
-    def odeint(self) -> Outcome:
-        start = (*self.from_hanging, 0.0, 0.0)
-        task = Odeint("payload", [self.ratio], "fehlberg78", 1e-15, 1e-12, 1e-5, start)
-        _, y, steps = task.end(self.span)
-        return self.judge(y[:2], steps)
+        return self.judged(motion)
 
 
 class LetGo(KnownEnd):
@@ -184,6 +171,7 @@ class LetGo(KnownEnd):
     links, gravity = 100, 9.81
     mass = length = 1 / links
     start = speeds = (0.0,) * links
+    system = ("chain", [links])
     steps = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order makes it 1e-10 m
 
     def __init__(self) -> None:
@@ -268,11 +256,7 @@ class LetGo(KnownEnd):
             f"{'</body>' * self.links}</worldbody></mujoco>"
         )
 
-    def joints(self, of_links: Any, *, rates: bool = False) -> Array:
-        return np.diff(np.array(of_links), prepend=0.0)
-
-    def angles(self, of_joints: Array) -> Array:
-        return np.vstack([np.cumsum(half, axis=0) for half in np.split(of_joints, 2)])
+    mujocos_zero = (0.0, 1.0)  # type: ignore[assignment]
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         motion = self.by_mujoco(dt, integrator, watched=True)
@@ -281,9 +265,3 @@ class LetGo(KnownEnd):
         after = f"{motion.t[-1]:.2g} s"
         said = f"diverges after {after}, starts again, with a line on stderr"
         return Outcome(said=said, right=False)
-
-    def odeint(self) -> Outcome:
-        start = (*self.start, *self.speeds)
-        task = Odeint("chain", [self.links], "fehlberg78", 1e-12, 1e-9, 1e-4, start)
-        _, y, steps = task.end(self.span)
-        return self.judge(y[: self.links], steps)
