@@ -47,7 +47,7 @@ def scene(name: str) -> Any:
 
 def run(name: str, program: str, arguments: dict[str, Any]) -> Outcome:
     how = {key: value for key, value in arguments.items() if key != "own_loop"}
-    return run_bounded(lambda: getattr(scene(name), program)(**how))
+    return run_bounded(lambda: scene(name).run(program, **how))
 
 
 def row_of(name: str, program: str, how: str, arguments: dict[str, Any]) -> Point:

@@ -24,6 +24,7 @@ class Drift(Scene):
     times = np.linspace(0, span[1], 201)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
     system = ("textbook", ())
+    settings = {"pendcore": {"t_eval": times}, "mujoco": {"every": times[1]}}  # noqa: RUF012
 
     def energy(self, states: Any) -> Array:
         """Return the energy, J, in states (..., 4)."""
@@ -40,15 +41,9 @@ class Drift(Scene):
     def judged(self, motion: Motion) -> Outcome:
         return self.judge(motion.y, motion.words)
 
-    def pendcore(self, **how: Any) -> Outcome:
-        return self.judged(self.by_pendcore(**how, t_eval=self.times))
-
     def scipy(self, **how: Any) -> Outcome:
         motion = self.by_scipy(**how, t_eval=self.times)
         return self.judge(motion.y, f"{motion.raw.nfev} evaluations")
-
-    def mujoco(self, dt: float, integrator: str) -> Outcome:
-        return self.judged(self.by_mujoco(dt, integrator, each=round(self.times[1] / dt)))
 
     def odeint(self, **how: Any) -> Outcome:
         return self.judge(self.by_odeint(times=self.times, **how).y, "integrate_times")
@@ -67,6 +62,7 @@ class ShakenPivot(Scene):
     eps = 0.2  # m; the rod has 1 m
     small = 1e-5  # rad from upright; the nonlinear part is its square, relatively
     zero, start = UPRIGHT, (small,)
+    settings = {"pendcore": {"store": "end"}}  # noqa: RUF012
 
     @property
     def border(self) -> float:
@@ -83,7 +79,7 @@ class ShakenPivot(Scene):
     def reference(self) -> dict[str, list[float]]:
         return {"w": [self.border]}
 
-    def sought(self, after: Callable[[], Motion]) -> Outcome:
+    def outcome(self, run: Callable[[], Motion]) -> Outcome:
         """Seek the frequency at which a small angle is the same again after a period of the drive.
 
         The equation is even in time. Therefore the trace of the map over a period is twice the
@@ -93,7 +89,7 @@ class ShakenPivot(Scene):
 
         def grown(w: float) -> float:
             self.w, self.span = w, (0.0, 2 * pi / w)
-            return float(after().y[-1, 0]) / self.small - 1
+            return float(run().y[-1, 0]) / self.small - 1
 
         w = brentq(grown, 0.9 * self.border, 1.1 * self.border, xtol=1e-13)
         return Outcome(error=abs(w / self.border - 1), said=f"stands from {w:.10f} rad/s on")
@@ -106,24 +102,15 @@ class ShakenPivot(Scene):
     def system(self) -> tuple[str, Sequence[float]]:  # type: ignore[override]
         return "shaken", (G, self.eps, self.w)
 
-    def pendcore(self, **how: Any) -> Outcome:
-        return self.sought(lambda: self.by_pendcore(**how, store="end"))
-
     def rates(self, t: float, y: Array) -> tuple[float, float]:
         return y[1], 1.5 * (G - self.eps * self.w**2 * cos(self.w * t)) * sin(y[0])
-
-    def scipy(self, **how: Any) -> Outcome:
-        return self.sought(lambda: self.by_scipy(**how))
 
     def couple(self, data: Any) -> Any:
         """Return the torque of the pivot's acceleration, in the frame of the pivot."""
         return -0.5 * self.eps * self.w**2 * cos(self.w * data.time) * sin(data.qpos[0])
 
     def mujoco(self, steps: int) -> Outcome:
-        return self.sought(lambda: self.by_mujoco(self.span[1] / steps, "RK4", each=steps))
-
-    def odeint(self, **how: Any) -> Outcome:
-        return self.sought(lambda: self.by_odeint(**how))
+        return self.outcome(lambda: self.by_mujoco(self.span[1] / steps, "RK4", fitted=True))
 
 
 class Upright(Scene):
@@ -133,6 +120,7 @@ class Upright(Scene):
     start, speeds, span = (UPRIGHT + 1e-9,) * 2, (0.0, 0.0), (0.0, 6.0)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
     system = ("textbook", ())
+    settings = {"scipy": {"dense_output": True}}  # noqa: RUF012
 
     @cache  # noqa: B019
     def fall_time(self) -> float:
@@ -177,9 +165,6 @@ class Upright(Scene):
             low, high = (low, middle) if fallen(middle) else (middle, high)
         return self.judge(float(high))
 
-    def scipy(self, **how: Any) -> Outcome:
-        return self.judged(self.by_scipy(**how, dense_output=True))
-
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         motion = self.by_mujoco(dt, integrator)
         off = np.abs(motion.y[:, :2] - UPRIGHT).max(axis=1)
@@ -199,6 +184,7 @@ class Separatrix(Scene):
     amplitude = float(2 * np.arcsin(0.999999))
     zero, sign, start = HANGING, -1.0, (amplitude,)
     system = ("pendulum", [G])
+    settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
     with mp.workdps(30):
         modulus = mpmath.sin(mpf(amplitude) / 2)
         span = (0.0, float(4 * ellipk(modulus**2) * sqrt(2 / (3 * mpf(G)))))
@@ -214,7 +200,3 @@ class Separatrix(Scene):
 
     def rates(self, t: float, y: Array) -> list[float]:
         return [y[1], -1.5 * G * np.sin(y[0])]
-
-    def mujoco(self, dt: float, integrator: str) -> Outcome:
-        steps = round(self.span[1] / dt)
-        return self.judged(self.by_mujoco(dt, integrator, each=steps, fitted=True))

@@ -17,15 +17,6 @@ from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene
 from hard_cases.rods import Array, G
 
-# MuJoCo's friction at its hardest, with a time constant in s.
-STIFF_FRICTION = {"solimpfriction": "0.9999 0.9999 0.001", "solreffriction": "{} 1"}
-
-
-def hardened(constant: float | None) -> dict[str, str]:
-    if constant is None:
-        return {}
-    return {key: value.format(constant) for key, value in STIFF_FRICTION.items()}
-
 
 class HeldRod(Scene):
     """A rod that friction holds at 30 degrees for a million seconds."""
@@ -68,7 +59,7 @@ class HeldRod(Scene):
     def mujoco(self, dt: float, constant: float | None = None) -> Outcome:
         """Run ten seconds, and go on at the last rate."""
         seconds = 10.0
-        motion = self.by_mujoco(dt, seconds=seconds, **hardened(constant))
+        motion = self.by_mujoco(dt, seconds=seconds, constant=constant)
         rate = float(motion.y[-1, 1])
         traced = motion.at(self.traced)[:, 0] - self.start[0]
         traced += rate * np.maximum(self.traced - seconds, 0)
@@ -155,9 +146,6 @@ class StickSlip(Scene):
         piece = next(sol for sol in pieces if self.resting <= sol.t[-1])
         return self.judge(pieces[-1].y[0, -1], piece.sol(self.resting)[1])
 
-    def mujoco(self, dt: float, constant: float | None = None, **how: Any) -> Outcome:
-        return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
-
     def odeint(self, **how: Any) -> Outcome:
         return self.judged(self.by_odeint(times=[self.resting, self.span[1]], **how))
 
@@ -177,6 +165,7 @@ class TwoJoints(Scene):
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=G)
     joint = 'frictionloss="1"'
     system = ("loaded", [*friction, 1e-3, amplitude])
+    settings = {"scipy": {"dense_output": True}, "odeint": {"times": times}}  # noqa: RUF012
 
     def motor(self, t: float) -> Array:
         return np.array([self.amplitude * np.sin(self.frequency * t), 0.0])
@@ -221,16 +210,7 @@ class TwoJoints(Scene):
         trace = {"phi_1": phi[:, 0].tolist(), "phi_2": phi[:, 1].tolist(), "error": off.tolist()}
         return Outcome(error=float(off.max()), said=said, trace=trace)
 
-    def scipy(self, **how: Any) -> Outcome:
-        return self.judged(self.by_scipy(**how, dense_output=True))
-
     def model(self, dt: float, integrator: str, **joint: Any) -> Any:
         model = super().model(dt, integrator, **joint)
         model.dof_frictionloss[:] = self.friction
         return model
-
-    def mujoco(self, dt: float, constant: float | None = None, **how: Any) -> Outcome:
-        return self.judged(self.by_mujoco(dt, **how, **hardened(constant)))
-
-    def odeint(self, **how: Any) -> Outcome:
-        return self.judged(self.by_odeint(times=self.times, **how))

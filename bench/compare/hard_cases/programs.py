@@ -7,6 +7,7 @@ import subprocess
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,7 @@ class Scene:
     joint = ""  # attributes of MuJoCo's joints
     hanging = True  # whether MuJoCo's angles are 0 where all rods hang, or where they stand
     system: tuple[str, Sequence[float]] = ("", ())  # Boost.odeint's name of it, and parameters
+    settings: dict[str, dict[str, Any]] = {}  # noqa: RUF012  further ones of each program's runner
 
     # What acts, for each program.
 
@@ -82,10 +84,18 @@ class Scene:
         """Numbers that the texts quote."""
         return {}
 
-    # The programs.
+    # The programs. A case that has its own way with one has a method of the program's name.
 
-    def pendcore(self, **how: Any) -> Outcome:
-        return self.judged(self.by_pendcore(**how))
+    def run(self, program: str, **how: Any) -> Outcome:
+        own = getattr(self, program, None)
+        if own:
+            found: Outcome = own(**how)
+            return found
+        runner = getattr(self, f"by_{program}")
+        return self.outcome(partial(runner, **self.settings.get(program, {}), **how))
+
+    def outcome(self, run: Callable[[], Motion]) -> Outcome:
+        return self.judged(run())
 
     def by_pendcore(self, **how: Any) -> Motion:
         import pendcore as pc
@@ -114,9 +124,6 @@ class Scene:
             events=events, raw=sol,
         )  # fmt: skip
 
-    def scipy(self, **how: Any) -> Outcome:
-        return self.judged(self.by_scipy(**how))
-
     def by_scipy(self, **how: Any) -> Motion:
         from scipy.integrate import solve_ivp
 
@@ -129,23 +136,24 @@ class Scene:
             success=sol.success, events=sol.t_events[0] if how.get("events") else (), raw=sol,
         )  # fmt: skip
 
-    def mujoco(self, **how: Any) -> Outcome:
-        return self.judged(self.by_mujoco(**how))
-
     def by_mujoco(
         self, dt: float, integrator: str = "implicitfast", *, watched: bool = False,
-        each: int = 1, fitted: bool = False, seconds: float | None = None,
-        **joint: Any,
+        every: float = 0.0, fitted: bool = False, seconds: float | None = None,
+        constant: float | None = None, **joint: Any,
     ) -> Motion:  # fmt: skip
-        """Step through the span, or some seconds of it, and keep every so many states.
+        """Step through the span, or some seconds of it; keep all states, or one `every` so often.
 
-        `fitted` makes the step a part of the span. With `watched` the user has disabled MuJoCo's
+        `fitted` makes the step a part of the span, and keeps its end alone. A time `constant`, s,
+        makes friction as hard as it gets. With `watched` the user has disabled MuJoCo's
         restart from the start, and looks for warnings after each step; others see them at the end.
         """
         import mujoco
 
         seconds = seconds or self.span[1] - self.span[0]
         steps = round(seconds / dt)
+        each = steps if fitted else max(1, round(every / dt))
+        if constant is not None:
+            joint |= {"solimpfriction": "0.9999 0.9999 0.001", "solreffriction": f"{constant} 1"}
         model = self.model(seconds / steps if fitted else dt, integrator, **joint)
         data = mujoco.MjData(model)
         data.time = self.span[0]
@@ -199,9 +207,6 @@ class Scene:
         return (
             (HANGING - self.zero, -self.sign) if self.hanging else (self.zero - UPRIGHT, self.sign)
         )
-
-    def odeint(self, **how: Any) -> Outcome:
-        return self.judged(self.by_odeint(**how))
 
     def task(self, method: str, atol: float, rtol: float, first_step: float) -> Odeint:
         start = (*self.start, *self.speeds)

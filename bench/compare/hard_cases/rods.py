@@ -14,9 +14,9 @@ G = 9.807
 
 
 def two_rods(
-    payload: float = 0.0, damping: float = 0.0, *, from_hanging: bool = False, of: Any = math
+    payload: float = 0.0, *, from_hanging: bool = False, of: Any = math
 ) -> Callable[[float, Array], list[float]]:
-    """Rates of two rods of 1 kg and 1 m with a mass at the tip and a damper in joint 2.
+    """Rates of two rods of 1 kg and 1 m with a mass at the tip.
 
     The determinant is free of terms that cancel. Python's floats are quicker than NumPy's, which
     know infinities.
@@ -27,9 +27,8 @@ def two_rods(
         q1, q2, w1, w2 = y.tolist() if of is math else y
         c, s = cos(q1 - q2), sin(q1 - q2)
         g1, g2 = (-sin(q1), -sin(q2)) if from_hanging else (cos(q1), cos(q2))
-        couple = -damping * (w2 - w1)
-        r1 = (1.5 + p) * G * g1 - a * s * w2 * w2 - couple
-        r2 = a * G * g2 + a * s * w1 * w1 + couple
+        r1 = (1.5 + p) * G * g1 - a * s * (w2 * w2)
+        r2 = a * G * g2 + a * s * (w1 * w1)
         determinant = 7 / 36 + 2 * p / 3 + (a * s) * (a * s)
         a1 = ((1 / 3 + p) * r1 - a * c * r2) / determinant
         return [w1, w2, a1, ((4 / 3 + p) * r2 - a * c * r1) / determinant]

@@ -43,11 +43,17 @@ class StiffDamper(KnownEnd):
     links, mass, gravity = 2, 1.0, G
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 5.0)
     damping = 1e5  # N m s at joint 2; over its moment of inertia, about 0.08, it is 1e6 a second
-    rates = staticmethod(two_rods(damping=damping))  # type: ignore[assignment]
     system = ("loaded", [damping])
 
     def effects(self, fx: Any) -> list[Any]:
         return [fx.ViscousJoint(joint=2, damping=self.damping)]
+
+    def rates(self, t: float, y: Array) -> Array:
+        """The textbook's rates, with -b (qd_2 - qd_1) on link 2 and its opposite on link 1."""
+        f = np.array(two_rods(of=np)(t, y))
+        a12, couple = 0.5 * np.cos(y[0] - y[1]), -self.damping * (y[3] - y[2])
+        f[2:] += np.linalg.solve([[4 / 3, a12], [a12, 1 / 3]], [-couple, couple])
+        return f
 
     @cache  # noqa: B019
     def end(self) -> list[float]:
@@ -76,7 +82,7 @@ class StiffDamper(KnownEnd):
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         steps = round(self.span[1] / dt)
-        found = self.by_mujoco(dt, integrator, each=steps)
+        found = self.by_mujoco(dt, integrator, every=self.span[1])
         return self.judge(found.y[-1, :2], f"{steps} steps")
 
 
@@ -152,8 +158,7 @@ class Payload(KnownEnd):
         )  # fmt: skip
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
-        steps = round(self.span[1] / dt)
-        motion = self.by_mujoco(dt, integrator, each=steps, fitted=True)
+        motion = self.by_mujoco(dt, integrator, fitted=True)
         if not motion.success:
             said = "diverges, starts again from hanging, with a line on stderr"
             return Outcome(said=said, right=False)
@@ -172,6 +177,7 @@ class LetGo(KnownEnd):
     mass = length = 1 / links
     start = speeds = (0.0,) * links
     system = ("chain", [links])
+    settings = {"pendcore": {"store": "end"}}  # noqa: RUF012
     steps = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order makes it 1e-10 m
 
     def __init__(self) -> None:
@@ -225,9 +231,6 @@ class LetGo(KnownEnd):
     def reference(self) -> dict[str, list[float]]:
         return {"tip": self.end()}
 
-    def pendcore(self, **how: Any) -> Outcome:
-        return self.judged(self.by_pendcore(**how, store="end"))
-
     def rates(self, t: float, y: Array) -> Array:
         """Use the dense mass matrix of the angles, M = A cos(q_i - q_j), and Cholesky's factors."""
         from scipy.linalg import cho_factor, cho_solve
@@ -235,9 +238,9 @@ class LetGo(KnownEnd):
         n = self.links
         c, s, squares = np.cos(y[:n]), np.sin(y[:n]), y[n:] ** 2
         matrix = self.coupled * (np.outer(c, c) + np.outer(s, s))
-        turning = c * (self.coupled @ (s * squares)) - s * (self.coupled @ (c * squares))
+        forces = self.moments * self.gravity * c - s * (self.coupled @ (c * squares))
+        forces += c * (self.coupled @ (s * squares))
         factor = cho_factor(matrix, overwrite_a=True, check_finite=False)
-        forces = self.moments * self.gravity * c + turning
         return np.append(y[n:], cho_solve(factor, forces, check_finite=False))
 
     def model(self, dt: float, integrator: str, **_: Any) -> Any:
