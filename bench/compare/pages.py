@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import Any
 
 import figures
+import forward_figures
 import forward_tables
 import hard_case_figures
 import hard_case_tables
@@ -40,8 +41,8 @@ OF_SOLVES = Page("solves", solve_tables, figures.draw_solves)
 PAGES = {
     **dict.fromkeys(overview_tables.NAMES, OF_SOLVES),
     "stiff": Page("stiff", solve_tables, figures.draw_stiff),
-    "chains": Page("chains", forward_tables, figures.draw_chains),
-    "effects": Page("effects", forward_tables, figures.draw_effects),
+    "chains": Page("chains", forward_tables, forward_figures.draw_chains),
+    "effects": Page("effects", forward_tables, forward_figures.draw_effects),
     "ensembles": Page("ensembles", solve_tables, figures.draw_ensembles),
     "hard_cases": Page(
         "hard_cases",
