@@ -60,7 +60,7 @@ compare: build-bench  ## accuracy and speed beside other solvers
 	python bench/compare/compare.py
 
 hard-cases: build-bench  ## what breaks simulators, here and in other programs
-	python bench/compare/compare_hard_cases.py
+	python bench/compare/compare.py --only hard_cases
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
 	$(BUILT)/bench/pendcore_bench

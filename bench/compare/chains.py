@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from typing import Any
 
 import numpy as np
 from chain_scenes import Array, ChainScene, chain_scene
@@ -12,6 +10,7 @@ from contenders.contender import Unsupported
 from contenders.forward_dynamics import Calls, ForwardDynamics, contenders
 from machine import circumstances
 from measure import Timing, interleave
+from record import Point, Record
 from tqdm import tqdm
 
 LENGTHS = (2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
@@ -19,8 +18,6 @@ QUICK_LENGTHS = (2, 10, 100, 500)
 BURST_SECONDS = 2e-3
 CHECKED_UP_TO = 200  # links; beyond, the dense solution is no better than what it checks
 ALLOWED_DISAGREEMENT = 1e-6  # relative angles are badly conditioned in long chains
-
-Key = tuple[str, int]  # contender and links
 
 
 def accelerations(scene: ChainScene) -> Array:
@@ -44,7 +41,7 @@ def disagreement(found: Array, known: Array) -> float:
     return float(np.abs(found - known).max() / np.abs(known).max())
 
 
-def nanoseconds(timing: Timing) -> dict[str, float | int]:
+def nanoseconds(timing: Timing) -> Point:
     return {
         "minimum_ns": 1e9 * timing.minimum,
         "median_ns": 1e9 * timing.median,
@@ -52,12 +49,17 @@ def nanoseconds(timing: Timing) -> dict[str, float | int]:
     }
 
 
+def row_of(contender: str, case: str, timing: Timing, calls: Calls, error: float | None) -> Point:
+    named = {"contender": contender, "case": case, **nanoseconds(timing)}
+    return {**named, "bytes": calls.bytes(), "disagreement": error}
+
+
 def prepare(
     entrants: list[ForwardDynamics], lengths: tuple[int, ...]
-) -> tuple[dict[Key, Calls], dict[Key, float], dict[str, str]]:
+) -> tuple[dict[tuple[str, int], Calls], dict[tuple[str, int], float], dict[str, str]]:
     """Prepare all calls. Return how far each is from the dense equations, and why some stop."""
-    calls: dict[Key, Calls] = {}
-    errors: dict[Key, float] = {}
+    calls: dict[tuple[str, int], Calls] = {}
+    errors: dict[tuple[str, int], float] = {}
     stops: dict[str, str] = {}
     for n in lengths:
         scene = chain_scene(n)
@@ -82,41 +84,24 @@ def prepare(
     return calls, errors, stops
 
 
-def measure(*, quick: bool, rounds: int) -> dict[str, Any]:
-    """Measure everything that is here; return the record, with the machine, as JSON holds it."""
+def measure(*, quick: bool, rounds: int) -> Record:
+    """Measure everything that is here."""
+    begin = time.perf_counter()
+    lengths = QUICK_LENGTHS if quick else LENGTHS
     with contenders() as found:
         entrants = [one for one in found if not one.name.endswith(("_run", "_kernel"))]
-        return measure_these(entrants, quick, rounds)
-
-
-def measure_these(entrants: list[ForwardDynamics], quick: bool, rounds: int) -> dict[str, Any]:
-    begin = time.perf_counter()
-    if not entrants:
-        print("chains: nobody takes part", file=sys.stderr)
-    lengths = QUICK_LENGTHS if quick else LENGTHS
-    calls, errors, stops = prepare(entrants, lengths)
-    bar = tqdm(range(rounds), desc="chains", unit="round", disable=None)
-    timings = interleave(calls, bar, BURST_SECONDS)
-    return {
-        "comparison": "chains",
-        **circumstances(begin, rounds, BURST_SECONDS),
-        "contenders": [
-            {
-                "name": contender.name,
-                "label": contender.label,
-                "about": contender.about,
-                "stops": stops.get(contender.name),
-                "points": [
-                    {
-                        "n": n,
-                        **nanoseconds(timings[contender.name, n]),
-                        "bytes": calls[contender.name, n].bytes(),
-                        "disagreement": errors.get((contender.name, n)),
-                    }
-                    for n in lengths
-                    if (contender.name, n) in timings
-                ],
-            }
-            for contender in entrants
-        ],
-    }
+        calls, errors, stops = prepare(entrants, lengths)
+        bar = tqdm(range(rounds), desc="chains", unit="round", disable=None)
+        timings = interleave(calls, bar, BURST_SECONDS)
+        rows = [
+            row_of(who.name, str(n), timings[key], calls[key], errors.get(key))
+            for who in entrants
+            for n in lengths
+            if (key := (who.name, n)) in timings
+        ]
+    return Record.of(
+        {"comparison": "chains", **circumstances(begin, rounds, BURST_SECONDS)},
+        {who.name: {**who.facts(), "stops": stops.get(who.name)} for who in entrants},
+        {str(n): {"n": n} for n in lengths},
+        rows,
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Effect:
     """An effect: `name` is its name in effect_parameters.hpp, `theirs` its name in MuJoCo.
 
@@ -26,45 +26,26 @@ class Effect:
     most_instructions: int | None = 60
 
 
-BARE = Effect(name="none", label="bare scene", theirs="")
+BARE = Effect("none", "bare scene", "")
 EFFECTS = (
-    Effect(name="viscous_joint", label="viscous joint", theirs="joint damping"),
+    Effect("viscous_joint", "viscous joint", "joint damping"),
+    Effect("viscous_joint_3", "viscous joint, three terms", "joint damping, 3 terms"),
     Effect(
-        name="viscous_joint_3", label="viscous joint, three terms", theirs="joint damping, 3 terms"
+        "rod_drag", "rod drag, both links", "fluid forces, inertia box", same_law=False,
+        most_ns=15, most_instructions=150,
     ),
+    Effect("torsional_spring", "torsional spring", "joint stiffness"),
+    Effect("motor_constant", "motor, constant", "motor actuator"),
+    Effect("motor_sinusoid", "motor, sinusoid", "motor, control set", most_ns=10),
+    Effect("motor_table", "motor, table", ""),
+    Effect("motor_pd", "motor, PD with limit", "position actuator, forcerange"),
+    Effect("rotor_inertia", "rotor inertia", "armature"),
+    Effect("payload", "payload", "part of the body"),
+    Effect("driven_pivot", "driven pivot, sinusoid", "", most_ns=10),
+    Effect("dry_joint_friction", "dry friction, sliding", "frictionloss", same_law=False),
+    Effect("joint_limit", "joint stop, never reached", "joint limit", felt=False),
     Effect(
-        name="rod_drag",
-        label="rod drag, both links",
-        theirs="fluid forces, inertia box",
-        same_law=False,
-        most_ns=15,
-        most_instructions=150,
-    ),
-    Effect(name="torsional_spring", label="torsional spring", theirs="joint stiffness"),
-    Effect(name="motor_constant", label="motor, constant", theirs="motor actuator"),
-    Effect(name="motor_sinusoid", label="motor, sinusoid", theirs="motor, control set", most_ns=10),
-    Effect(name="motor_table", label="motor, table", theirs=""),
-    Effect(name="motor_pd", label="motor, PD with limit", theirs="position actuator, forcerange"),
-    Effect(name="rotor_inertia", label="rotor inertia", theirs="armature"),
-    Effect(name="payload", label="payload", theirs="part of the body"),
-    Effect(name="driven_pivot", label="driven pivot, sinusoid", theirs="", most_ns=10),
-    Effect(
-        name="dry_joint_friction",
-        label="dry friction, sliding",
-        theirs="frictionloss",
-        same_law=False,
-    ),
-    Effect(
-        name="joint_limit",
-        label="joint stop, never reached",
-        theirs="joint limit",
-        felt=False,
-    ),
-    Effect(
-        name="user",
-        label="compiled function of a user's",
-        theirs="mjcb_passive",
-        most_ns=None,
+        "user", "compiled function of a user's", "mjcb_passive", most_ns=None,
         most_instructions=None,
     ),
-)
+)  # fmt: skip

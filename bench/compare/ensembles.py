@@ -8,23 +8,22 @@ is the median over the trajectories of the position error at the end, against he
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 from cases import Array, Case, read_case
 from contenders.contender import PYTHON, PythonRun, Unsupported
-from contenders.equations import accelerations
 from contenders.pendcore_python import scene_of
 from machine import circumstances
 from measure import interleave
+from record import Point, Record
 from tqdm import tqdm
 from trajectory_error import distances
-
-Record = dict[str, Any]
 
 MEMBERS = 4096
 """Starts of an ensemble."""
@@ -32,7 +31,7 @@ FEW = {"loop": 512, "scipy": 24}
 """Starts of contenders that need as long for one whatever their number."""
 KNOWN = 512
 """Starts whose true end is computed."""
-T_END = 5.0
+SPAN = (0.0, 5.0)
 BURST_SECONDS = 0.3
 MOTOR = (2.0, 3.0)
 """Amplitude, N m, and angular frequency, rad/s, of the motor in joint 1."""
@@ -42,17 +41,18 @@ SCENES = {
     "motor": "two rods, a motor of 2 sin(3 t) N m in joint 1",
     "three_links": "three rods",
 }
+Solve = Callable[[], Array]
+"""A call that returns angles at the end, (k, n)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Contender:
-    """`prepare` makes a call that returns angles at the end, (k, n), from a tolerance."""
+    """`prepare` makes a call from a case, starts (k, n) and a tolerance."""
 
     name: str
     label: str
-    prepare: Callable[[Case, Array, float], Callable[[], Array]]
+    prepare: Callable[[Case, Array, float], Solve]
     tolerances: tuple[float, ...]
-    members: int = MEMBERS
     ours: bool = False
 
 
@@ -71,8 +71,7 @@ def scene(case: Case) -> pc.Scene:
     made = scene_of(case)
     if not has_motor(case):
         return made
-    amplitude, frequency = MOTOR
-    wave = pc.effects.Sinusoid(amplitude=amplitude, angular_frequency=frequency)
+    wave = pc.effects.Sinusoid(amplitude=MOTOR[0], angular_frequency=MOTOR[1])
     return replace(made, effects=[pc.effects.Motor(joint=1, sinusoid=wave)])
 
 
@@ -82,99 +81,71 @@ def starts(n: int, count: int) -> Array:
     return drawn
 
 
-# ---- pendcore
+def by_ensemble(method: str, workers: int, case: Case, q0: Array, tolerance: float) -> Solve:
+    how: dict[str, Any] = {"method": method, "workers": workers, "progress": False}
+    call = partial(pc.ensemble, scene(case), q0=q0, t_span=SPAN, rtol=tolerance, atol=tolerance)
+    return lambda: call(**how).q
 
 
-def by_ensemble(method: str, workers: int | None) -> Callable[..., Callable[[], Array]]:
-    def prepare(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
-        made = scene(case)
-
-        def solve() -> Array:
-            found = pc.ensemble(
-                made, q0=q0, t_span=(0.0, T_END), method=method, rtol=tolerance, atol=tolerance,
-                workers=workers, progress=False,
-            )  # fmt: skip
-            return found.q
-
-        return solve
-
-    return prepare
-
-
-def by_loop(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
+def by_loop(case: Case, q0: Array, tolerance: float) -> Solve:
+    how: dict[str, Any] = {"rtol": tolerance, "atol": tolerance, "store": "end"}
     made = scene(case)
-
-    def solve() -> Array:
-        return np.array([
-            pc.simulate(
-                made, q0=start, t_span=(0.0, T_END), rtol=tolerance, atol=tolerance, store="end"
-            ).q[-1]
-            for start in q0
-        ])  # fmt: skip
-
-    return solve
-
-
-# ---- heyoka
+    return lambda: np.array([pc.simulate(made, q0=one, t_span=SPAN, **how).q[-1] for one in q0])
 
 
 def equations(case: Case) -> list[tuple[Any, Any]]:
     import heyoka
+    from contenders.heyoka_taylor import system
 
-    names = [f"{kind}{i}" for kind in ("q", "w") for i in range(case.n)]
-    variables = [heyoka.expression(name) for name in names]
     amplitude, frequency = MOTOR
     drive = amplitude * heyoka.sin(frequency * heyoka.time) if has_motor(case) else 0.0
-    found = accelerations(case, heyoka.sin, heyoka.cos, drive)(*variables)
-    return list(zip(variables, [*variables[case.n :], *found], strict=True))
+    return system(case, drive)
 
 
-def by_batch(size: int) -> Callable[..., Callable[[], Array]]:
-    """A batch is propagated to the end, and then the next."""
-
-    def prepare(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
-        import heyoka
-
-        n = case.n
-        taylor = heyoka.taylor_adaptive_batch(
-            equations(case), np.zeros((2 * n, size)), tol=tolerance, fast_math=True
-        )
-        blocks = q0.reshape(-1, size, n).transpose(0, 2, 1).copy()
-
-        def solve() -> Array:
-            ends = np.empty((len(blocks), n, size))
-            for block, end in zip(blocks, ends, strict=True):
-                taylor.set_time(0.0)
-                taylor.state[:n] = block
-                taylor.state[n:] = 0.0
-                taylor.propagate_until(T_END)
-                end[:] = taylor.state[:n]
-            return ends.transpose(0, 2, 1).reshape(-1, n)
-
-        return solve
-
-    return prepare
-
-
-def by_heyoka_ensemble(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
-    """Use the ensemble of batches that heyoka has, in one thread."""
+def batches_of(case: Case, q0: Array, tolerance: float, size: int) -> tuple[Any, Array]:
+    """Compile heyoka's integrator of a batch; return it and the starts, (batches, n, size)."""
     import heyoka
 
-    size, n = heyoka.recommended_simd_size(), case.n
+    n = case.n
     taylor = heyoka.taylor_adaptive_batch(
         equations(case), np.zeros((2 * n, size)), tol=tolerance, fast_math=True
     )
-    blocks = q0.reshape(-1, size, n).transpose(0, 2, 1).copy()
+    return taylor, q0.reshape(-1, size, n).transpose(0, 2, 1).copy()
 
-    def begin(one: Any, i: int) -> Any:
-        one.set_time(0.0)
-        one.state[:n] = blocks[i]
-        one.state[n:] = 0.0
-        return one
+
+def begin(taylor: Any, block: Array) -> Any:
+    n = len(block)
+    taylor.set_time(0.0)
+    taylor.state[:n] = block
+    taylor.state[n:] = 0.0
+    return taylor
+
+
+def by_batch(size: int, case: Case, q0: Array, tolerance: float) -> Solve:
+    """Propagate a batch to the end, and then the next."""
+    taylor, blocks = batches_of(case, q0, tolerance, size)
+    n = case.n
+
+    def solve() -> Array:
+        ends = np.empty(blocks.shape)
+        for block, end in zip(blocks, ends, strict=True):
+            begin(taylor, block).propagate_until(SPAN[1])
+            end[:] = taylor.state[:n]
+        return ends.transpose(0, 2, 1).reshape(-1, n)
+
+    return solve
+
+
+def by_heyoka_ensemble(case: Case, q0: Array, tolerance: float) -> Solve:
+    """Use the ensemble of batches that heyoka has, in one thread."""
+    import heyoka
+
+    taylor, blocks = batches_of(case, q0, tolerance, heyoka.recommended_simd_size())
+    n = case.n
 
     def solve() -> Array:
         found = heyoka.ensemble_propagate_until_batch(
-            taylor, T_END, len(blocks), begin, max_workers=1
+            taylor, SPAN[1], len(blocks), lambda one, i: begin(one, blocks[i]), max_workers=1
         )
         return np.array([one[0].state[:n] for one in found]).transpose(0, 2, 1).reshape(-1, n)
 
@@ -185,147 +156,108 @@ def truth(case: Case, q0: Array) -> Array:
     """Return the angles at the end from heyoka in long double, rounded, (k, n)."""
     import heyoka
 
+    long_double, n = np.longdouble, case.n
     taylor = heyoka.taylor_adaptive(
-        equations(case), np.zeros(2 * case.n, dtype=np.longdouble), fp_type=np.longdouble
+        equations(case), np.zeros(2 * n, dtype=long_double), fp_type=long_double
     )
-    ends = []
-    for start in q0:
-        taylor.time = np.longdouble(0)
-        taylor.state[: case.n] = start
-        taylor.state[case.n :] = 0
-        taylor.propagate_until(np.longdouble(T_END))
-        ends.append(np.array(taylor.state[: case.n], dtype=np.float64))
-    return np.array(ends)
+    ends = np.empty(q0.shape)
+    for start, end in zip(q0, ends, strict=True):
+        taylor.time = long_double(0)
+        taylor.state[:n] = start
+        taylor.state[n:] = 0
+        taylor.propagate_until(long_double(SPAN[1]))
+        end[:] = taylor.state[:n]
+    return ends
 
 
-# ---- SciPy
-
-
-def by_scipy(case: Case, q0: Array, tolerance: float) -> Callable[[], Array]:
+def by_scipy(case: Case, q0: Array, tolerance: float) -> Solve:
     from contenders.scipy_solvers import by_numba
     from scipy.integrate import solve_ivp
 
     if has_motor(case):
         raise Unsupported("its right-hand side has no motor")
-    function, _, _ = by_numba(case)
-    rest = np.zeros(case.n)
-
-    def solve() -> Array:
-        return np.array([
-            solve_ivp(
-                function, (0.0, T_END), np.concatenate([start, rest]), method="DOP853",
-                rtol=tolerance, atol=tolerance,
-            ).y[: case.n, -1]
-            for start in q0
-        ])  # fmt: skip
-
-    return solve
+    function, n = by_numba(case)[0], case.n
+    starting = np.hstack([q0, np.zeros(q0.shape)])
+    how: dict[str, Any] = {"method": "DOP853", "rtol": tolerance, "atol": tolerance}
+    return lambda: np.array([solve_ivp(function, SPAN, y, **how).y[:n, -1] for y in starting])
 
 
 def contenders() -> list[Contender]:
     import heyoka
 
-    loose = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
-    tight = (*loose[1:], 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14)
-    ours = [
-        Contender(
-            name=method, label=f"pc.ensemble {method}", prepare=by_ensemble(method, 1),
-            tolerances=loose if method == "dopri5" else tight, ours=True,
-        )
-        for method in ("dopri5", "dop853", "taylor")
-    ]  # fmt: skip
-    size = heyoka.recommended_simd_size()
+    loose = tuple(float(f"1e-{k}") for k in range(2, 9))
+    tight = tuple(float(f"1e-{k}") for k in range(3, 15))
     orders = tuple(10.0**-k for k in range(3, 16, 2))  # each is compiled, which takes seconds
-    batches = [
-        Contender(
-            name=f"batch_{k}", label=f"heyoka, batches of {k}", prepare=by_batch(k),
-            tolerances=orders,
-        )
-        for k in sorted({size, 2 * size})
-    ]  # fmt: skip
+    size = heyoka.recommended_simd_size()
+    methods = {"dopri5": loose, "dop853": tight, "taylor": tight}
     return [
-        *ours,
-        Contender(
-            name="loop", label="loop of pc.simulate", prepare=by_loop, tolerances=tight[::2],
-            members=FEW["loop"],
+        *(
+            Contender(who, f"pc.ensemble {who}", partial(by_ensemble, who, 1), at, ours=True)
+            for who, at in methods.items()
         ),
-        *batches,
-        Contender(
-            name="heyoka_ensemble", label="heyoka ensemble_propagate_until_batch",
-            prepare=by_heyoka_ensemble, tolerances=orders[::2],
+        Contender("loop", "loop of pc.simulate", by_loop, tight[::2]),
+        *(
+            Contender(f"batch_{k}", f"heyoka, batches of {k}", partial(by_batch, k), orders)
+            for k in (size, 2 * size)
         ),
         Contender(
-            name="scipy", label="SciPy DOP853, numba", prepare=by_scipy, tolerances=tight[::3],
-            members=FEW["scipy"],
+            "heyoka_ensemble", "heyoka ensemble_propagate_until_batch", by_heyoka_ensemble,
+            orders[::2],
         ),
+        Contender("scipy", "SciPy DOP853, numba", by_scipy, tight[::3]),
     ]  # fmt: skip
 
 
-def measured(name: str, *, quick: bool, rounds: int) -> Record:
-    """Measure one scene."""
-    case = case_of(name)
-    members = 512 if quick else MEMBERS
+def measured(name: str, *, quick: bool, rounds: int) -> tuple[Point, list[Point]]:
+    """Measure one scene: its facts and rows."""
+    case, members = case_of(name), 512 if quick else MEMBERS
     q0 = starts(case.n, members)
     known = truth(case, q0[: 64 if quick else KNOWN])
     runs: dict[tuple[str, float], PythonRun[Array]] = {}
-    points: dict[tuple[str, float], Record] = {}
-    taking_part = contenders()
-    for one in taking_part:
-        few = q0[: min(one.members, members)]
+    rows: dict[tuple[str, float], Point] = {}
+    for one in contenders():
+        few = q0[: FEW.get(one.name, members)]
         for tolerance in one.tolerances[:: 3 if quick else 1]:
             try:
                 solve = one.prepare(case, few, tolerance)
             except Unsupported:
                 continue
-            ends = solve()
             count = min(len(known), len(few))
-            errors = distances(ends[:count], known[:count], np.array(case.lengths))
-            key = (one.name, tolerance)
-            runs[key] = PythonRun(solve, _unused)
-            points[key] = {"setting": tolerance, "error": float(np.median(errors))}
-    turns = tqdm(range(rounds), desc=name, unit="round", disable=None)
-    taken = interleave(runs, turns, BURST_SECONDS)
-    by_name = {one.name: min(one.members, members) for one in taking_part}
-    for (who, tolerance), timing in taken.items():
-        points[who, tolerance] |= {
-            "minimum_us": 1e6 * timing.minimum / by_name[who],
-            "median_us": 1e6 * timing.median / by_name[who],
-        }
-    return {
-        "case": name,
-        "label": SCENES[name],
-        "members": members,
-        "known": len(known),
-        "contenders": [
-            {
-                "name": one.name,
-                "label": one.label,
-                "ours": one.ours,
-                "sides": [PYTHON],
-                "points": [points[key] for key in points if key[0] == one.name],
-            }
-            for one in taking_part
-        ],
-        "threads": threads(case, q0, rounds) if name == "bare" else None,
-    }
+            errors = distances(solve()[:count], known[:count], np.array(case.lengths))
+            runs[one.name, tolerance] = timed(solve)
+            row = {"contender": one.name, "case": name, "setting": tolerance}
+            rows[one.name, tolerance] = row | {"error": float(np.median(errors))}
+    taken = interleave(runs, turns_of(rounds, name), BURST_SECONDS)
+    for key, timing in taken.items():
+        microseconds = 1e6 / min(FEW.get(key[0], members), members)
+        rows[key]["minimum_us"] = microseconds * timing.minimum
+        rows[key]["median_us"] = microseconds * timing.median
+    facts = {"label": SCENES[name], "members": members, "known": len(known)}
+    return facts, list(rows.values())
 
 
-def threads(case: Case, q0: Array, rounds: int) -> Record:
+def threads(rounds: int, members: int) -> list[Point]:
     """Compare two threads with one, and two processes of a bare loop with one, in turns."""
-    one, two = (by_ensemble("taylor", k)(case, q0, 1e-9) for k in (1, 2))
+    case = case_of("bare")
+    q0 = starts(case.n, members)
+    one, two = (by_ensemble("taylor", workers, case, q0, 1e-9) for workers in (1, 2))
     count = 3_000_000
     with ProcessPoolExecutor(2) as pool:
         list(pool.map(spin, [1, 1]))
         runs = {
-            "one thread": PythonRun(one, _unused),
-            "two threads": PythonRun(two, _unused),
-            "one loop": PythonRun(lambda: list(pool.map(spin, [count])), _unused),
-            "two loops": PythonRun(lambda: list(pool.map(spin, [count, count])), _unused),
+            "one thread": timed(one),
+            "two threads": timed(two),
+            "one loop": timed(lambda: list(pool.map(spin, [count]))),
+            "two loops": timed(lambda: list(pool.map(spin, [count, count]))),
         }
         taken = interleave(runs, range(rounds), BURST_SECONDS)
-    ensemble = taken["one thread"].minimum / taken["two threads"].minimum
-    loops = 2 * taken["one loop"].minimum / taken["two loops"].minimum
-    return {"ensemble": ensemble, "loops": loops}
+    least = {name: timing.minimum for name, timing in taken.items()}
+    gains = {
+        "ensemble": least["one thread"] / least["two threads"],
+        "loops": 2 * least["one loop"] / least["two loops"],
+    }
+    setting = {"case": case.name, "setting": "two threads"}
+    return [{"contender": who, **setting, "gain": gain} for who, gain in gains.items()]
 
 
 def spin(count: int) -> int:
@@ -336,17 +268,29 @@ def spin(count: int) -> int:
     return total
 
 
-def _unused(_: object) -> Any:
-    raise NotImplementedError
+def timed(solve: Callable[[], Any]) -> PythonRun[Any]:
+    def unused(_: object) -> Any:
+        raise NotImplementedError
+
+    return PythonRun(solve, unused)
 
 
-def measure(*, quick: bool, rounds: int) -> Record:
-    """Measure all scenes; return the record as JSON holds it."""
-    begin = time.perf_counter()
+def turns_of(rounds: int, name: str) -> Any:
+    return tqdm(range(rounds), desc=name, unit="round", disable=None)
+
+
+def measure(*, quick: bool, rounds: int, scenes: Iterable[str] = SCENES) -> Record:
+    """Measure all scenes."""
+    began = time.perf_counter()
     turns = 2 if quick else max(3, rounds // 6)
-    scenes = [measured(name, quick=quick, rounds=turns) for name in SCENES]
-    return {
-        "comparison": "ensembles",
-        **circumstances(begin, turns, BURST_SECONDS),
-        "scenes": scenes,
-    }
+    found = {name: measured(name, quick=quick, rounds=turns) for name in scenes}
+    rows = [row for _, listed in found.values() for row in listed]
+    return Record.of(
+        {"comparison": "ensembles", **circumstances(began, turns, BURST_SECONDS)},
+        {
+            one.name: {"label": one.label, "ours": one.ours, "sides": [PYTHON]}
+            for one in contenders()
+        },
+        {name: facts for name, (facts, _) in found.items()},
+        rows + threads(turns, 512 if quick else MEMBERS),
+    )

@@ -5,52 +5,55 @@ They stand between a pair of comments that name them, and are written anew with 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
-from equal_error import SIDES, Record, compare
-from tables import at_tolerance, entrants, number, per_evaluation, power, short, table
+from equal_error import OUTER_SIDES, compare
+from record import Record
+from solve_tables import at_tolerance, per_evaluation, solves_of
+from tables import NONE, number, power, short, table
 
 CORE, PYTHON = "pendcore_dopri5_cpp", "pendcore_dopri5"
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
-def figures(record: Record) -> str:
+def figures(data: Mapping[str, Any]) -> str:
     """Sum up accuracy and speed: a row for each achieved error, then the cost of a call."""
-    header = ["largest position error", "C++", "best peer", "`pc.simulate`", "best peer"]
-    sides = [SIDES[0], SIDES[-1]]
+    record = Record(data)
+    _, who = solves_of(record)
     rows = []
     for error in ERRORS:
         cells = [f"{power(error)} of the length"]
-        for side in sides:
-            found = compare(record, side, [error])
+        for side in OUTER_SIDES:
+            found = compare(who, side, [error])
             for best in (found[0].own, found[0].peer) if found else (None, None):
-                cells.append(f"{number(best[0])} us, {short(best[1])}" if best else "—")
+                cells.append(f"{number(best[0])} us, {short(best[1])}" if best else NONE)
         rows.append([cell.replace("pendcore ", "") for cell in cells])
-    known = entrants(record)
-    call, core = (known[who]["one_step"]["minimum_us"] for who in (PYTHON, CORE))
-    each = per_evaluation(at_tolerance(known[CORE], 1e-9))
-    last = (
-        f"* A right-hand side, all in: {number(each)} ns. A call of one step: {number(core)} us in "
-        f"C++, {number(call)} us from Python."
+    known = {one["name"]: one for one in who}
+    call, core = (number(known[name]["one_step"]["minimum_us"]) for name in (PYTHON, CORE))
+    each = number(per_evaluation(at_tolerance(known[CORE], 1e-9)))
+    machine = record.measured["machine"]
+    header = ["largest position error", "C++", "best peer", "`pc.simulate`", "best peer"]
+    return (
+        f"{table(header, rows)}\n"
+        f"* A right-hand side, all in: {each} ns. A call of one step: {core} us in C++, {call} us "
+        f"from Python.\n\nOn one core of {machine['processor']}, with "
+        f"{machine['instruction set of pendcore']}.\n"
     )
-    on = f"On one core of {record['machine']['processor']}, with " + str(
-        record["machine"]["instruction set of pendcore"]
-    )
-    return f"{table(header, rows)}\n{last}\n\n{on}.\n"
 
 
-def tolerances(record: Record) -> str:
+def tolerances(data: Mapping[str, Any]) -> str:
     """Tabulate the errors that tolerances give with dopri5."""
-    core = entrants(record)[CORE]
-    rows = []
-    for decade in range(3, 14, 2):
-        point = at_tolerance(core, 10.0**-decade)
-        rows.append([f"1e-{decade}", f"{point['error']:.0e}", str(point["evaluations"])])
+    _, who = solves_of(Record(data))
+    core = next(one for one in who if one["name"] == CORE)
+    points = {decade: at_tolerance(core, 10.0**-decade) for decade in range(3, 14, 2)}
+    rows = [[f"1e-{k}", f"{at['error']:.0e}", str(at["evaluations"])] for k, at in points.items()]
     header = ["rtol = atol", "largest position error / total length", "right-hand sides"]
     return table(header, rows)
 
 
-EXCERPTS = {
+EXCERPTS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
     "README.md": ("figures", figures),
     "docs/background/trust.md": ("tolerances", tolerances),
 }
@@ -68,4 +71,5 @@ def write(project: Path, record: Record) -> None:
     """Bring the documents up to date with the record."""
     for document, (name, excerpt) in EXCERPTS.items():
         path = project / document
-        path.write_text(insert(path.read_text(encoding="utf-8"), name, excerpt(record)), "utf-8")
+        text = insert(path.read_text(encoding="utf-8"), name, excerpt(record.data))
+        path.write_text(text, encoding="utf-8")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import contenders
@@ -12,6 +12,7 @@ from contenders.compiled import end_conversations
 from contenders.contender import Contender, Run, Unsupported
 from machine import circumstances
 from measure import Timing, achieved, interleave
+from record import ONE_STEP, Point, Record
 from tqdm import tqdm
 
 ONE_STEP_SETTINGS = {"tolerance": 1e-6, "step": 1e-4}
@@ -19,73 +20,52 @@ BURST_SECONDS = 1e-3
 SECONDS_A_RUN = 0.6  # enough for 30 calls that take less than 20 ms each
 LONGEST = 0.5  # s; a contender that takes longer at a setting is not tried with tighter ones
 PER_DECADE = 4
-
-Key = tuple[str, float | None]  # contender and setting; None for the call of one step
-Record = dict[str, Any]
-
-
 FOR_STIFF_SCENES = ("-radau5", "cyrk_nbsolve2_lsoda", "cyrk_nbsolve2_radau", "cyrk_nbsolve2_bdf")
+FACTS = ("label", "about", "ours", "sides", "setting")
+
+Key = tuple[str, Any]
+"""Contender and setting."""
 
 
 def for_any_scene(name: str) -> bool:
     return not any(part in name for part in FOR_STIFF_SCENES)
 
 
-class Look:
-    """A first look at a contender: what it achieves at each setting, and runs to be timed.
+def first_look(
+    who: Contender, case: Case, settings: list[float]
+) -> tuple[list[Point], dict[Key, Run]]:
+    """Find what a contender achieves at each setting; return rows, and runs to be timed.
 
     If no setting succeeds, there are no runs.
     """
-
-    def __init__(self, contender: Contender, case: Case, settings: list[float]) -> None:
-        self.contender = contender
-        self.points: list[Record] = []
-        self.runs: dict[Key, Run] = {}
-        given_up = ""
-        for setting in settings:
-            point: Record = {"setting": setting}
-            if given_up:
-                self.points.append({**point, "failure": given_up})
-                continue
-            run = contender.prepare(case, setting)
-            begin = time.perf_counter()
-            self.points.append(point | achieved(run, case))
-            if time.perf_counter() - begin > LONGEST:
-                given_up = "not run: it would take too long"
-            if "failure" not in self.points[-1]:
-                self.runs[contender.name, setting] = run
-        if self.runs:
-            short = contender.prepare(one_step(case), ONE_STEP_SETTINGS[contender.setting])
-            self.short_evaluations = short.outcome().evaluations
-            self.runs[contender.name, None] = short
-
-    def record(self, timings: dict[Key, Timing]) -> Record:
-        """Return the contender and its points, as JSON holds them."""
-        who = self.contender
-        compiling = [run.compile_seconds for run in self.runs.values() if run.compile_seconds]
-        return {
-            "name": who.name,
-            "label": who.label,
-            "about": who.about,
-            "ours": who.ours,
-            "sides": list(who.sides),
-            "setting": who.setting,
-            "compile_seconds": [min(compiling), max(compiling)] if compiling else None,
-            "one_step": {
-                "evaluations": self.short_evaluations,
-                **microseconds(timings[who.name, None]),
-            }
-            if self.runs
-            else None,
-            "points": [
-                point if "failure" in point else point | microseconds(timings[who.name, setting])
-                for point in self.points
-                for setting in [point["setting"]]
-            ],
-        }
+    rows: list[Point] = []
+    runs: dict[Key, Run] = {}
+    given_up = ""
+    for setting in settings:
+        row: Point = {"contender": who.name, "case": case.name, "setting": setting}
+        rows.append(row)
+        if given_up:
+            row["failure"] = given_up
+            continue
+        run = who.prepare(case, setting)
+        begin = time.perf_counter()
+        row |= achieved(run, case)
+        if time.perf_counter() - begin > LONGEST:
+            given_up = "not run: it would take too long"
+        if "failure" not in row:
+            runs[who.name, setting] = run
+    if runs:
+        short = who.prepare(one_step(case), ONE_STEP_SETTINGS[who.setting])
+        row = {"contender": who.name, "case": case.name, "setting": ONE_STEP}
+        rows.append(row | {"evaluations": short.outcome().evaluations})
+        runs[who.name, ONE_STEP] = short
+        waits = [run.compile_seconds for run in runs.values() if run.compile_seconds]
+        if waits:
+            rows[-1] |= {"compiling_least_s": min(waits), "compiling_most_s": max(waits)}
+    return rows, runs
 
 
-def microseconds(timing: Timing) -> Record:
+def microseconds(timing: Timing) -> Point:
     return {
         "minimum_us": 1e6 * timing.minimum,
         "median_us": 1e6 * timing.median,
@@ -100,34 +80,43 @@ def measure(
     rounds: int,
     takes_part: Callable[[str], bool] = for_any_scene,
     tightest: float = 0.0,
+    facts: Mapping[str, Any] | None = None,
 ) -> Record:
-    """Measure everything that is here; return the record, with the machine, as JSON holds it.
+    """Measure everything that is here.
 
-    `takes_part` chooses contenders by name; settings below the `tightest` are not tried.
+    `takes_part` chooses contenders by name; settings below the `tightest` are not tried; `facts`
+    are further ones of the case.
     """
     begin = time.perf_counter()
     entrants, absent = contenders.installed()
-    looks: list[Look] = []
+    rows: list[Point] = []
+    runs: dict[Key, Run] = {}
+    looked: dict[str, Any] = {}
     try:
         bar = tqdm([who for who in entrants if takes_part(who.name)], leave=False, disable=None)
         for who in bar:
             bar.set_description(f"{case.name}: {who.label}")
-            each = who.settings(1 if quick or who.slow else PER_DECADE)
+            settings = who.settings(1 if quick or who.slow else PER_DECADE)
             try:
-                looks.append(Look(who, case, [one for one in each if one > 0.9 * tightest]))
+                found = first_look(who, case, [one for one in settings if one > 0.9 * tightest])
             except Unsupported as reason:
                 absent[who.label] = str(reason)
-        runs = {key: run for look in looks for key, run in look.runs.items()}
+                continue
+            rows += found[0]
+            runs |= found[1]
+            looked[who.name] = {name: getattr(who, name) for name in FACTS}
         turns = tqdm(range(rounds), desc=f"{case.name}: rounds", unit="round", disable=None)
         timings = interleave(runs, turns, BURST_SECONDS, SECONDS_A_RUN)
     finally:
         end_conversations()
-    return {
-        "case": case.name,
-        **circumstances(begin, rounds, BURST_SECONDS),
+    for row in rows:
+        if "failure" not in row:
+            row |= microseconds(timings[row["contender"], row["setting"]])
+    measured = {"comparison": case.name, **circumstances(begin, rounds, BURST_SECONDS)}
+    known = {
         "uncertainty": case.uncertainty,
         "duration": float(case.times[-1] - case.times[0]),
         "times": len(case.times),
-        "absent": absent,
-        "contenders": [look.record(timings) for look in looks],
     }
+    cases = {case.name: {**(facts or {}), **known}}
+    return Record.of({**measured, "absent": absent}, looked, cases, rows)

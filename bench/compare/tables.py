@@ -1,25 +1,26 @@
-"""A record of solves as markdown tables."""
+"""Numbers and tables of a page, and what the pages of all comparisons say alike."""
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
-from equal_error import DECADES, Contender, Record, Side, compare, curve
-from work_precision import reached_at, time_at
+from record import Record
 
-SHOWN_TOLERANCES = (1e-6, 1e-9)
-KINDS = ("minimum_us", "median_us")
-
-
-def entrants(record: Record) -> dict[str, Any]:
-    return {contender["name"]: contender for contender in record["contenders"]}
+NONE = "—"
+WORDS = tomllib.loads((Path(__file__).parent / "templates/words.toml").read_text("utf-8"))
+"""What the pages say of each case, and why each peer wins where it does."""
+Rows = list[list[str]]
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write with that many digits and no power of ten; None becomes an em dash."""
+    """Write with that many digits and no power of ten, halves rounded up."""
     if value is None:
-        return "—"
+        return NONE
+    value *= 1 + 1e-12  # 3.235 lies just below the decimal
     if value >= 10 ** (digits - 1):
         return f"{value:.0f}"
     return f"{value:#.{digits}g}".rstrip(".")
@@ -29,9 +30,13 @@ def power(value: float) -> str:
     return f"{value:.0e}".replace("e-0", "e-")
 
 
-def table(header: list[str], rows: list[list[str]]) -> str:
-    lines = [header, ["---"] + ["--:"] * (len(header) - 1), *rows]
+def table(header: list[str], rows: Rows, align: str = "--:") -> str:
+    lines = [header, ["---"] + [align] * (len(header) - 1), *rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"
+
+
+def listed(lines: Iterable[str], otherwise: str = "None.") -> str:
+    return "\n".join(f"* {line}" for line in [*lines] or [otherwise])
 
 
 def pair(of_minima: float | None, of_medians: float | None) -> str:
@@ -45,86 +50,73 @@ def short(label: str) -> str:
     return label
 
 
-def best_against_best(record: Record, side: Side, errors: Iterable[float] = DECADES) -> str:
-    """Tabulate, for each decade of achieved error, the best of both sides and the goal.
-
-    Ratios are of minima, and of medians in parentheses.
-    """
-    compared = compare(record, side, errors)
-    if not compared:
-        return "Not measured: one of the two sides was not there.\n"
-    header = ["achieved error", "best of pendcore", "us", "best peer", "us", "ratio", "goal"]
-    rows = []
-    for at in compared:
-        own, peer = at.own or (None, "—"), at.peer or (None, "—")
-        if at.ratio is None:
-            found = "pendcore alone" if at.own else "peer alone" if at.peer else "nobody"
-        else:
-            found = pair(at.ratio, at.of_medians)
-        goal = f"{at.bar} {'reached' if at.reached else 'missed'}" if at.own or at.peer else "—"
-        names = [short(who) for _, who in (own, peer)]
-        rows.append(
-            [power(at.error), names[0], number(own[0]), names[1], number(peer[0]), found, goal]
-        )
-    return table(header, rows)
+def made(record: Record) -> str:
+    stem = record.measured["comparison"]
+    return (
+        "Made by `make compare`; do not edit: run again. The raw figures are in "
+        f"[{stem}.json](../records/comparison/{stem}.json)."
+    )
 
 
-def everybody(record: Record, side: str) -> str:
-    """Tabulate every contender's time at each decade of achieved error."""
-    present = [one for one in record["contenders"] if side in one["sides"]]
-    if not present:
-        return "Not measured.\n"
-    header = ["us at an error of", *map(power, DECADES), "smallest error"]
-    rows = [
-        [short(one["label"])]
-        + [number(time_at(curve(one), error)) for error in DECADES]
-        + [power(reached) if (reached := reached_at(curve(one))) else "—"]
-        for one in present
-    ]
-    return table(header, rows)
+def measured(record: Record, what: str) -> str:
+    return str(record.measured[what])
 
 
-def at_tolerance(contender: Contender, tolerance: float) -> dict[str, Any]:
-    """Return the contender's point at rtol = atol = tolerance; empty if there is none."""
-    for point in contender["points"]:
-        if abs(point["setting"] / tolerance - 1) < 1e-9 and "failure" not in point:
-            return dict(point)
-    return {}
+def fact(record: Record, what: str) -> str:
+    """Return a fact of the first case."""
+    return str(next(iter(record.cases.values()))[what])
 
 
-def per_evaluation(point: dict[str, Any]) -> float | None:
-    """Divide the time of the whole call by its right-hand sides, in nanoseconds."""
-    evaluations = point.get("evaluations")
-    return 1e3 * point["minimum_us"] / evaluations if evaluations else None
+def who(record: Record) -> str:
+    """Say who took part, who did not, and on what machine."""
+    return f"{contenders(record)}\n{absent(record)}\n{machine(record)}"
 
 
-def equal_tolerance(record: Record, tolerance: float) -> str:
-    """Tabulate every contender that was tried with this tolerance."""
-    header = ["contender", "error", "at the end", "of energy", "right-hand sides"]
-    header += ["us", "median us", "ns a right-hand side"]
-    rows = []
-    for contender in record["contenders"]:
-        point = at_tolerance(contender, tolerance)
-        if contender["setting"] != "tolerance" or not point:
-            continue
-        errors = [point[kind] for kind in ("error", "end_error", "energy_error")]
-        rows.append(
-            [contender["label"]]
-            + ["—" if error is None else f"{error:.1e}" for error in errors]
-            + [str(point["evaluations"] or "—")]
-            + [number(point[kind]) for kind in KINDS]
-            + [number(per_evaluation(point))]
-        )
-    return table(header, rows)
+def machine(record: Record) -> str:
+    facts = {**record.measured["machine"], "date": record.measured["date"]}
+    return listed(f"{name}: {value}" for name, value in facts.items())
 
 
-def fixed_cost(record: Record) -> str:
-    """Tabulate calls whose interval one step covers."""
-    rows = []
-    for contender in record["contenders"]:
-        call = contender["one_step"]
-        if call is None:
-            continue
-        times = [number(call[kind]) for kind in KINDS]
-        rows.append([contender["label"], str(call["evaluations"] or "—"), *times])
-    return table(["contender", "right-hand sides", "us", "median us"], rows)
+def contenders(record: Record) -> str:
+    """Say who took part, how long that one compiles, and where it stops."""
+    case = next(iter(record.cases), "")
+    compiling = {one["name"]: one["one_step"] or {} for one in record.taking_part(case)}
+    return listed(
+        (
+            f"{facts['label']}: {facts['about']}{waiting(compiling.get(name, {}))}"
+            + (f"; {facts['stops']}" if facts.get("stops") else "")
+            for name, facts in record.contenders.items()
+        ),
+        otherwise="Nobody.",
+    )
+
+
+def waiting(call: dict[str, Any]) -> str:
+    """Say how long a contender compiles, as the range from the quickest to the slowest setting."""
+    if "compiling_least_s" not in call:
+        return ""
+    ends = (number(call[f"compiling_{end}_s"], 2) for end in ("least", "most"))
+    return f"; compiles for {' to '.join(dict.fromkeys(ends))} s, which is in no figure here"
+
+
+def absent(record: Record) -> str:
+    """Say who is missing, and why."""
+    missing = record.measured.get("absent", {})
+    lines = (f"not here: {who}: {reason}" for who, reason in missing.items())
+    return f"\n{listed(lines)}\n" if missing else ""
+
+
+def failures(record: Record, case: str) -> list[str]:
+    """Name each contender that failed somewhere, and why, without the times and counts of it."""
+    lines = []
+    for one in record.taking_part(case):
+        reasons: dict[str, list[str]] = {}
+        for point in one["points"]:
+            if "failure" in point:
+                reason = re.sub(r" \(at t = [^)]*\)", "", point["failure"])
+                reason = re.sub(r"(t =|mode set) [\d.e+-]+", r"\1 ...", reason)
+                reasons.setdefault(reason, []).append(power(point["setting"]))
+        for reason, where in reasons.items():
+            span = where[0] if len(where) == 1 else f"{where[0]} to {where[-1]}"
+            lines.append(f"{one['label']} at {span}: {reason.rstrip('.')}")
+    return lines

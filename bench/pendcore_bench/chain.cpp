@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "calls.hpp"
-#include "simulate/steppers.hpp"
 
 namespace {
 
@@ -40,12 +39,7 @@ void step(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   std::vector<double> y = angles(n);
   y.resize(2 * y.size(), 0.3);
-  std::vector<double> rates(y.size());
-  const std::vector<double> tolerance(y.size(), 1e-9);
-  const auto stepper = make_stepper(hanging_chain(n), "dopri5");
-  stepper->set_tolerances(tolerance.data(), tolerance.data());
-  stepper->evaluate(0.0, y.data(), rates.data());
-  stepper->start(y.data(), rates.data());
+  const auto stepper = begun(hanging_chain(n), "dopri5", y);
   for (auto _ : state) benchmark::DoNotOptimize(stepper->attempt({0.0}, 1e-3, 0.0));
   set_calls(state, 6.0 * n);
 }

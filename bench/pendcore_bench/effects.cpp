@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calls.hpp"
-#include "simulate/steppers.hpp"
 
 namespace {
 
@@ -14,12 +13,7 @@ using namespace pendcore;
 void step(benchmark::State& state, const std::vector<Effect>& effects) {
   Scene scene = Scene::textbook();
   scene.effects = effects;
-  const std::vector<double> y{0.785, 1.047, 0.3, -0.2}, tolerance(4, 1e-9);
-  std::vector<double> rates(4);
-  const auto stepper = make_stepper(scene, "dopri5");
-  stepper->set_tolerances(tolerance.data(), tolerance.data());
-  stepper->evaluate(0.0, y.data(), rates.data());
-  stepper->start(y.data(), rates.data());
+  const auto stepper = begun(scene, "dopri5", {0.785, 1.047, 0.3, -0.2});
   for (auto _ : state) benchmark::DoNotOptimize(stepper->attempt({0.0}, 0.01, 0.0));
   set_calls(state, 6);
 }

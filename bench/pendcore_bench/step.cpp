@@ -4,24 +4,17 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <memory>
 #include <pendcore/simulate.hpp>
-#include <vector>
-#include "simulate/steppers.hpp"
+
+#include "calls.hpp"
 
 namespace {
 
 constexpr double h = 0.01;
 
-std::unique_ptr<pendcore::Stepper> stepper(const char* method, int digits) {
+auto stepper(const char* method, int digits) {
   const std::vector<double> y{0.785, 1.047, 0.0, 0.0};
-  const std::vector<double> tolerance(4, std::pow(10.0, -digits));
-  std::vector<double> dydt(4);
-  auto made = pendcore::make_stepper(pendcore::Scene::textbook(), method);
-  made->set_tolerances(tolerance.data(), tolerance.data());
-  made->evaluate(0.0, y.data(), dydt.data());
-  made->start(y.data(), dydt.data());
-  return made;
+  return begun(pendcore::Scene::textbook(), method, y, std::pow(10.0, -digits));
 }
 
 void latency(benchmark::State& state, const char* method) {

@@ -4,52 +4,54 @@ from __future__ import annotations
 
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 
-import tables
-from cases import Case, one_step, read_case
-from contenders.contender import Outcome, PythonRun, fixed_steps, tolerances
+import chains
+import effects
+from cases import one_step, read_case
+from chain_scenes import ChainScene, chain_scene
+from contenders.contender import Outcome, PythonRun, Unsupported, fixed_steps, tolerances
+from contenders.forward_dynamics import described
+from equal_error import SIDES, bar, compare, envelope, time_at
 from measure import achieved, interleave
 from trajectory_error import end_error, energy_error, position_error
-from work_precision import envelope, reached_at, time_at
 
 LENGTHS = np.array([1.0, 3.0])
 POWER_LAW = [(10.0**-k, 5.0 * 10 ** (0.2 * k)) for k in range(1, 13)]  # time = 5 error^-1/5
 
 
-def test_position_error_of_a_turned_link_is_its_chord_over_the_total_length() -> None:
-    q = np.array([[0.3, 0.7], [0.4, 0.8]])
-    turned = q + np.array([[0.0, 0.0], [0.0, 0.2]])
-    chord = 2 * 3.0 * math.sin(0.1)
-    assert position_error(turned, q, LENGTHS) == pytest.approx(chord / 4.0, rel=1e-12)
-
-
-def test_position_error_sees_a_joint_that_is_off_while_the_tip_is_right() -> None:
-    q, mirrored = np.array([[0.5, -0.5]]), np.array([[-0.5, 0.5]])
-    expected = 2 * math.sin(0.5) / 2
-    assert position_error(mirrored, q, np.ones(2)) == pytest.approx(expected, rel=1e-12)
-
-
-def test_position_error_is_the_worst_moment_and_end_error_the_last() -> None:
-    q = np.zeros((3, 2))
-    off = q + np.array([[0.0, 0.0], [0.2, 0.2], [0.1, 0.1]])
-    assert position_error(off, q, LENGTHS) == pytest.approx(2 * math.sin(0.1), rel=1e-12)
-    assert end_error(off, q, LENGTHS) == pytest.approx(2 * math.sin(0.05), rel=1e-12)
+@pytest.mark.parametrize(
+    ("off", "lengths", "worst", "last"),
+    [  # by hand: a chord of 2 L sin(angle / 2), over the total length
+        ([[0, 0], [0, 0.2]], (1, 3), 1.5 * math.sin(0.1), 1.5 * math.sin(0.1)),
+        ([[0, 0], [0.2, 0.2], [0.1, 0.1]], (1, 3), 2 * math.sin(0.1), 2 * math.sin(0.05)),
+        ([[1, -1]], (1, 1), math.sin(0.5), math.sin(0.5)),  # the tip is right, the joint not
+    ],
+    ids=["chord", "worst and last", "joint"],
+)
+def test_the_error_is_the_largest_distance_over_the_length(
+    off: Any, lengths: Any, worst: float, last: float
+) -> None:
+    q = np.full((len(off), 2), [-0.5, 0.5]) * (len(off) == 1)
+    found, sizes = q + np.array(off, float), np.array(lengths, float)
+    assert position_error(found, q, sizes) == pytest.approx(worst, rel=1e-12)
+    assert end_error(found, q, sizes) == pytest.approx(last, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     "name", ["textbook", "textbook_long", "high_energy", "unequal", "no_gravity", "three_links"]
 )
-def test_reference_trajectories_have_neither_position_error_nor_energy_error(name: str) -> None:
+def test_reference_trajectories_have_no_energy_error(name: str) -> None:
     case = read_case(name)
-    masses, lengths = np.array(case.masses), np.array(case.lengths)
     q, qd = case.reference[:, : case.n], case.reference[:, case.n :]
-    assert position_error(q, q, lengths) == 0
+    masses, lengths = np.array(case.masses), np.array(case.lengths)
     assert energy_error(q, qd, masses, lengths, case.gravity) < 1e-14
 
 
@@ -58,13 +60,12 @@ def test_energy_error_of_a_lost_fall_is_the_height_over_the_length() -> None:
     assert energy_error(q, qd, np.array([2.0]), np.array([3.0]), 9.8) == pytest.approx(0.5)
 
 
-def test_interpolation_is_exact_on_a_power_law() -> None:
+def test_interpolation_is_exact_on_a_power_law_and_ends_where_the_points_do() -> None:
     for error in (1e-1, 3e-4, 1e-7, 1e-12):
-        assert time_at(POWER_LAW, error) == pytest.approx(5.0 * error**-0.2, rel=1e-12)
-
-
-def test_order_of_the_points_does_not_matter() -> None:
-    assert envelope(POWER_LAW[::-1]) == envelope(POWER_LAW) == POWER_LAW
+        assert time_at(POWER_LAW[::-1], error) == pytest.approx(5.0 * error**-0.2, rel=1e-12)
+    assert time_at(POWER_LAW, 0.5) == POWER_LAW[0][1]
+    assert time_at(POWER_LAW, 1e-13) is None
+    assert time_at([], 1e-3) is None
 
 
 def test_points_that_another_beats_in_both_are_left_out() -> None:
@@ -72,39 +73,69 @@ def test_points_that_another_beats_in_both_are_left_out() -> None:
     assert envelope(points) == [(1e-1, 1.0), (1e-2, 2.0), (1e-3, 4.0)]
 
 
-def test_looser_errors_cost_the_loosest_point_and_tighter_ones_are_out_of_reach() -> None:
-    assert time_at(POWER_LAW, 0.5) == POWER_LAW[0][1]
-    assert time_at(POWER_LAW, 1e-13) is None
-    assert time_at([], 1e-3) is None
-
-
-def test_smallest_error_is_that_of_the_best_point() -> None:
-    assert reached_at(POWER_LAW) == 1e-12
-    assert reached_at([]) is None
-
-
-def test_tolerances_hold_the_whole_decades_exactly() -> None:
+def test_settings_hold_whole_decades_exactly_and_steps_reach_the_shortest() -> None:
     listed = tolerances(13, 4)
     assert listed[::4] == [float(f"1e-{k}") for k in range(1, 14)]
-    assert len(listed) == 49
     assert listed == sorted(listed, reverse=True)
-
-
-def test_fixed_steps_go_from_the_longest_to_the_shortest() -> None:
     steps = fixed_steps(0.1, 1e-4, 8)
-    assert steps[0] == 0.1
-    assert steps[8] == pytest.approx(1e-2)
-    assert steps[-1] == pytest.approx(1e-4)
+    assert (steps[0], steps[8], steps[-1]) == (0.1, pytest.approx(1e-2), pytest.approx(1e-4))
+
+
+# ---- best against best
+
+
+def entrant(name: str, times: dict[float, float], *sides: str) -> dict[str, Any]:
+    """Make a contender; a peer's median is four minima, ours two."""
+    ours = name.startswith("pendcore")
+    points = [
+        {"error": error, "minimum_us": time, "median_us": (2 if ours else 4) * time}
+        for error, time in times.items()
+    ]
+    failed = [{"failure": "too stiff"}]
+    return {"label": name, "ours": ours, "sides": sides, "points": points + failed}
+
+
+WHO = [
+    entrant("pendcore low", {1e-2: 1.0, 1e-4: 10.0, 1e-6: 100.0}, "compiled"),
+    entrant("pendcore high", {1e-2: 4.0, 1e-4: 8.0, 1e-9: 20.0}, "compiled"),
+    entrant("pendcore v3", {1e-2: 3.0, 1e-6: 300.0}, "compiled_v3"),
+    entrant("pendcore python", {1e-2: 2.0, 1e-6: 100.0}, "python"),
+    entrant("odeint", {1e-2: 2.0, 1e-4: 20.0, 1e-5: 60.0}, "compiled"),
+    entrant("heyoka", {1e-3: 12.0, 1e-12: 12.0}, "compiled", "python"),
+]
 
 
 @pytest.mark.parametrize(
-    ("value", "written"),
-    [(0.6449, "0.645"), (9.996, "10.0"), (56.78, "56.8"), (123.4, "123"), (8765.0, "8765")],
+    ("side", "error", "own", "peer", "reached"),
+    [
+        (0, 1e-2, (1.0, "pendcore low"), (2.0, "odeint"), True),
+        (0, 1e-4, (8.0, "pendcore high"), (12.0, "heyoka"), False),
+        (0, 1e-9, (20.0, "pendcore high"), (12.0, "heyoka"), False),
+        (0, 1e-12, None, (12.0, "heyoka"), False),
+        (1, 1e-2, (3.0, "pendcore v3"), (2.0, "odeint"), False),
+        (2, 1e-2, (2.0, "pendcore python"), (12.0, "heyoka"), True),
+    ],
 )
-def test_numbers_in_tables_have_three_digits_and_no_power_of_ten(
-    value: float, written: str
+def test_the_best_of_each_side_is_the_quickest_at_that_error(
+    side: int, error: float, own: Any, peer: Any, reached: bool
 ) -> None:
-    assert tables.number(value) == written
+    (at,) = compare(WHO, SIDES[side], [error])
+    assert (at.own, at.peer, at.reached) == (own, peer, reached)
+    assert at.ratio == (own and pytest.approx(own[0] / peer[0]))
+    assert at.of_medians == (own and pytest.approx(own[0] / peer[0] / 2))
+    assert at.lost == (own is None or own[0] > peer[0])
+
+
+def test_goals_are_half_and_in_cpp_six_tenths_above_1e_5_and_reached_alone() -> None:
+    errors = (1e-2, 1e-4, 1e-5, 1e-13)
+    assert [[bar(side, error) for error in errors] for side in SIDES] == [
+        [0.6, 0.6, 0.5, 0.5], [0.6, 0.6, 0.5, 0.5], [0.5] * 4
+    ]  # fmt: skip
+    (alone,) = compare([WHO[0], WHO[4]], SIDES[0], [1e-6])
+    assert (alone.peer, alone.reached, alone.lost) == (None, True, False)
+
+
+# ---- turns
 
 
 class Turn:
@@ -123,16 +154,14 @@ class Turn:
 
 def test_every_run_has_one_turn_a_round_in_an_order_drawn_anew() -> None:
     turns: list[str] = []
-    runs = {name: Turn(name, turns, [1.0] * 8) for name in "abcde"}
-    interleave(runs, range(8), 0.0)
+    interleave({name: Turn(name, turns, [1.0] * 8) for name in "abcde"}, range(8), 0.0)
     rounds = ["".join(turns[k : k + 5]) for k in range(0, 40, 5)]
     assert all(sorted(order) == list("abcde") for order in rounds)
     assert len(set(rounds)) > 1
 
 
 def test_timing_keeps_the_least_and_the_median_of_all_rounds() -> None:
-    runs = {"a": Turn("a", [], [3.0, 1.0, 2.0, 9.0, 8.0])}
-    timing = interleave(runs, range(5), 0.0)["a"]
+    timing = interleave({"a": Turn("a", [], [3.0, 1.0, 2.0, 9.0, 8.0])}, range(5), 0.0)["a"]
     assert (timing.minimum, timing.median, timing.calls) == (1.0, 3.0, 5)
 
 
@@ -141,8 +170,9 @@ def test_slow_runs_have_fewer_turns_spread_over_all_rounds() -> None:
     costs = {"quick": 0.001, "slow": 0.1, "endless": 2.0}
     runs = {name: Turn(name, turns, [cost] * 30) for name, cost in costs.items()}
     found = interleave(runs, range(30), 0.0, seconds_a_run=1.0)
-    calls = {name: timing.calls for name, timing in found.items()}
-    assert calls == {"quick": 30, "slow": 10, "endless": 3}
+    assert {name: one.calls for name, one in found.items()} == {
+        "quick": 30, "slow": 10, "endless": 3
+    }  # fmt: skip
     late = turns[-14:]  # the turns of the last ten rounds
     assert late.count("slow") in (3, 4)
     assert "endless" in late
@@ -156,21 +186,69 @@ def test_first_call_of_a_burst_warms_up_unless_it_is_the_only_one() -> None:
     assert len(run.burst(1e-3)) == len(calls) - 1
 
 
-def outcome_of(states: np.ndarray, case: Case) -> dict[str, object]:
-    return achieved(PythonRun(solve=lambda: states, read=lambda s: Outcome(s, 7)), case)
-
-
 def test_a_run_that_ends_early_or_in_nan_is_a_failure_not_an_error_of_zero() -> None:
     case = read_case("textbook")
     broken = case.reference.copy()
     broken[50, 1] = np.nan
-    assert "failure" in outcome_of(broken, case)
-    assert "failure" in outcome_of(case.reference[:-1], case)
+    for states, fails in ((broken, True), (case.reference[:-1], True), (case.reference, False)):
+        run = PythonRun(solve=lambda states=states: states, read=lambda s: Outcome(s, 7))
+        assert ("failure" in achieved(run, case)) == fails
     assert "failure" in achieved(Turn("a", [], []), case)
-    assert outcome_of(case.reference, case)["error"] == 0
+    short = one_step(case)  # the same start over a ten-thousandth of a second
+    assert [*short.times, *short.start] == [0.0, 1e-4, *case.start]
 
 
-def test_the_fixed_cost_is_measured_on_the_same_start_over_a_ten_thousandth_of_a_second() -> None:
-    case = one_step(read_case("textbook"))
-    np.testing.assert_array_equal(case.times, [0.0, 1e-4])
-    np.testing.assert_array_equal(case.start, read_case("textbook").start)
+# ---- right-hand sides
+
+
+@pytest.mark.parametrize(
+    ("q", "qd", "gravity", "expected"),
+    [  # by hand: two rods of 1 kg and 1 m
+        ((0.0, 0.0), (0.0, 0.0), 9.8, (9 * 9.8 / 7, -3 * 9.8 / 7)),
+        ((np.pi / 2, 0.0), (2.0, 3.0), 0.0, (-0.5 * 9 / (4 / 3), 0.5 * 4 / (1 / 3))),
+    ],
+    ids=["fall", "turning links pull"],
+)
+def test_dense_equations_of_chains_are_right(
+    q: Any, qd: Any, gravity: float, expected: Any
+) -> None:
+    rods = {"masses": np.ones(2), "lengths": np.ones(2), "gravity": gravity, "effect": "none"}
+    scene = ChainScene(**rods, q=np.array([q]), qd=np.array([qd]))
+    np.testing.assert_allclose(chains.accelerations(scene), expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize("n", [1, 3, 100, 500])
+def test_scenes_of_chains_are_written_exactly_and_have_a_power_of_two_of_states(n: int) -> None:
+    scene = replace(chain_scene(n), effect="viscous_joint")
+    states = scene.q.shape[0]
+    assert states >= 2
+    assert states & (states - 1) == 0
+    effect, *numbers = described(scene).split()
+    numbers_of = [*scene.masses, *scene.lengths, scene.gravity, *scene.q.flat, *scene.qd.flat]
+    assert (effect, *map(float, numbers)) == ("viscous_joint", n, states, *numbers_of)
+
+
+class Side:
+    """A contender that answers with given accelerations."""
+
+    def __init__(self, name: str, **answers: list[float]) -> None:
+        self.name, self.answers = name, {"none": [1.0, 2.0], **answers}
+
+    def prepare(self, scene: Any) -> Any:
+        if scene.effect not in self.answers:
+            raise Unsupported(scene.effect)
+        answer = np.array(self.answers[scene.effect])
+        return type("Calls", (), {"accelerations": lambda _: answer})()
+
+
+def test_sides_that_disagree_or_do_not_feel_an_effect_are_not_compared() -> None:
+    ours: Any = Side("pendcore", viscous_joint=[1.5, 2.0])
+    theirs: Any = Side("mujoco_forward", viscous_joint=[1.5, 2.0 + 1e-8])
+    assert effects.prepare([ours, theirs])[1]["viscous_joint"] == pytest.approx(5e-9)
+    theirs.answers["viscous_joint"] = [1.5, 2.1]
+    with pytest.raises(RuntimeError, match="not one scene"):
+        effects.prepare([ours, theirs])
+    theirs.answers["viscous_joint"] = [1.0, 2.0]
+    with pytest.raises(RuntimeError, match="mujoco_forward does not feel it"):
+        effects.prepare([theirs])
+    effects.prepare([Side("mujoco_forward", joint_limit=[1.0, 2.0])])  # type: ignore[list-item]

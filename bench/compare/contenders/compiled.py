@@ -1,4 +1,4 @@
-"""The C++ contenders that solve cases: programs that answer requests (see solves.cpp).
+"""The C++ contenders that solve cases: programs that answer requests (see solves.hpp).
 
 On a processor with AVX-512, pendcore takes part twice: as it is, and held back to x86-64-v3.
 """
@@ -15,8 +15,8 @@ import numpy as np
 from cases import Case
 
 from contenders.contender import COMPILED, COMPILED_V3, Contender, Outcome, Run
-from contenders.conversation import Conversation, find_executable, words
-from contenders.pendcore_methods import FIXED, settings_of
+from contenders.conversation import Conversation, Prepared, find_executable, words
+from contenders.pendcore_python import FIXED, settings_of
 
 PROGRAMS = ("solves_pendcore", "solves_odeint", "solves_sundials")
 OURS = "solves_pendcore"
@@ -38,18 +38,12 @@ def end_conversations() -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class CompiledRun:
-    conversation: Conversation
-    number: str
+class CompiledRun(Prepared):
     width: int
     compile_seconds: float | None = None
 
-    def burst(self, seconds: float) -> list[float]:
-        answer = self.conversation.ask(f"burst {self.number} {seconds}")
-        return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]
-
     def outcome(self) -> Outcome:
-        answer = self.conversation.ask(f"outcome {self.number}")
+        answer = self.ask("outcome")
         if answer.startswith("failed "):
             raise RuntimeError(answer.removeprefix("failed "))
         evaluations, steps, *states = answer.split()
@@ -59,15 +53,11 @@ class CompiledRun:
 
 
 def prepare(conversation: Conversation, name: str, case: Case, setting: float) -> Run:
-    described = " ".join(
-        [
-            *(str(case.n), words(case.masses), words(case.lengths), repr(case.gravity)),
-            *(words(case.damping), words(case.stiffness), words(case.rest)),
-            *(str(int(case.controller)), words(case.start)),
-            *(str(len(case.times)), words(case.times)),
-        ]
-    )
-    number = conversation.ask(f"prepare {name} {setting!r} {described}")
+    described = [str(case.n), words(case.masses), words(case.lengths), repr(case.gravity)]
+    described += [words(numbers) for numbers in (case.damping, case.stiffness, case.rest)]
+    described += [str(int(case.controller)), words(case.start)]
+    described += [str(len(case.times)), words(case.times)]
+    number = conversation.ask(f"prepare {name} {setting!r} {' '.join(described)}")
     return CompiledRun(conversation, number, 2 * case.n)
 
 

@@ -9,6 +9,7 @@ import os
 import subprocess
 import threading
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -95,3 +96,19 @@ class Conversation:
             label, _, about = self.ask(f"about {name}").partition(": ")
             result.append((name, label, about))
         return result
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """What a program has prepared, under a number."""
+
+    conversation: Conversation
+    number: str
+
+    def ask(self, word: str) -> str:
+        return self.conversation.ask(f"{word} {self.number}")
+
+    def burst(self, seconds: float) -> list[float]:
+        """Call for about that long and list seconds of a call, or batch by batch of many."""
+        answer = self.conversation.ask(f"burst {self.number} {seconds}")
+        return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]

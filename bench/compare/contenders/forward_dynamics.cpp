@@ -1,12 +1,3 @@
-// The program of a contender of forward dynamics; forward_dynamics.py speaks to it:
-//
-//   names                    the contenders
-//   about NAME               label: version and settings
-//   prepare NAME EFFECT n states masses lengths gravity q qd      the number of the calls
-//   accelerations CALLS      qdd at the first state
-//   bytes CALLS              heap in use after the preparation of the calls, 0 if unknown
-//   make CALLS COUNT         makes COUNT calls; answers the number of right-hand sides of one call
-//   burst CALLS SECONDS      nanoseconds of a right-hand side, one number for each batch of calls
 #include "forward_dynamics.hpp"
 
 #include <chrono>
@@ -16,17 +7,11 @@
 #include <malloc.h>
 #endif
 
+namespace contenders {
 namespace {
 
-using namespace contenders;
 using Clock = std::chrono::steady_clock;
 constexpr double batch_seconds = 1e-5;  // long compared with reading the clock
-
-struct Prepared {
-  std::unique_ptr<Calls> calls;
-  std::size_t bytes = 0;
-  int count = 0;  // in a batch
-};
 
 // The bytes of the heap that are in use, by any library; 0 if unknown.
 std::size_t bytes_in_use() {
@@ -56,65 +41,43 @@ Scene read_scene(std::istream& in) {
   return scene;
 }
 
-std::string burst(Prepared& prepared, double seconds) {
-  Calls& calls = *prepared.calls;
+}  // namespace
+
+std::string Calls::burst(double seconds) {
   const auto begin = Clock::now();
-  double taken = seconds_of(calls, prepared.count > 0 ? prepared.count : 1);  // warms up
-  for (int count = 1; prepared.count == 0; count *= 2) {
-    taken = seconds_of(calls, count);
-    if (taken >= batch_seconds) prepared.count = count;
+  double taken = seconds_of(*this, count_ > 0 ? count_ : 1);  // warms up
+  for (int count = 1; count_ == 0; count *= 2) {
+    taken = seconds_of(*this, count);
+    if (taken >= batch_seconds) count_ = count;
   }
   std::string line;
   char word[40];
   do {
-    taken = seconds_of(calls, prepared.count) / (prepared.count * calls.right_hand_sides());
+    taken = seconds_of(*this, count_) / (count_ * right_hand_sides());
     std::snprintf(word, sizeof word, "%.4g ", 1e9 * taken);
     line += word;
   } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
   return line;
 }
 
-std::string answer(std::istream& request, std::vector<Prepared>& all) {
-  static const std::vector<ForwardDynamics> list = forward_dynamics();
-  std::string word, name;
-  request >> word;
-  if (word == "names") return names(list);
-  if (word == "about") {
-    request >> name;
-    return about(list, name);
-  }
-  if (word == "prepare") {
-    request >> name;
-    const ForwardDynamics& contender = find(list, name);
-    const Scene scene = read_scene(request);
-    Prepared& prepared = all.emplace_back();
-    const std::size_t before = bytes_in_use();
-    try {
-      prepared.calls = contender.prepare(scene);
-    } catch (...) {
-      all.pop_back();
-      throw;
-    }
-    prepared.bytes = bytes_in_use() - before;
-    return std::to_string(all.size() - 1);
-  }
-  if (word == "accelerations") return words(all.at(read_count(request)).calls->accelerations());
-  if (word == "bytes") return std::to_string(all.at(read_count(request)).bytes);
-  if (word == "make") {
-    Calls& calls = *all.at(read_count(request)).calls;
-    calls.make(static_cast<int>(read_count(request)));
-    return std::to_string(calls.right_hand_sides());
-  }
-  if (word == "burst") {
-    Prepared& prepared = all.at(read_count(request));
-    return burst(prepared, read_number(request));
-  }
-  throw std::invalid_argument("no such request: " + word);
+std::string Calls::tell(const std::string& word, std::istream& rest) {
+  if (word == "accelerations") return words(accelerations());
+  if (word == "bytes") return std::to_string(bytes);
+  if (word != "make") throw std::invalid_argument("no such request: " + word);
+  make(static_cast<int>(read_count(rest)));
+  return std::to_string(right_hand_sides());
 }
 
-}  // namespace
-
-int main() {
-  std::vector<Prepared> all;
-  return converse([&all](std::istream& request) { return answer(request, all); });
+Contender forward_dynamics(std::string name, std::string label, std::string about,
+                           PrepareCalls prepare) {
+  return {std::move(name), std::move(label), std::move(about),
+          [prepare = std::move(prepare)](std::istream& in) -> std::unique_ptr<Prepared> {
+            const Scene scene = read_scene(in);
+            const std::size_t before = bytes_in_use();
+            std::unique_ptr<Calls> calls = prepare(scene);
+            calls->bytes = bytes_in_use() - before;
+            return calls;
+          }};
 }
+
+}  // namespace contenders

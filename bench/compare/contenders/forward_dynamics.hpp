@@ -1,14 +1,16 @@
 // A contender of forward dynamics prepares calls that compute the accelerations of a scene. Each
 // side is a program of its own, so that the linker does not mix inline functions of two headers or
-// of two builds: a .cpp file that defines forward_dynamics(), linked with forward_dynamics.cpp.
+// of two builds: a .cpp file that defines `contenders`. forward_dynamics.py speaks to it:
+//
+//   prepare NAME EFFECT n states masses lengths gravity q qd
+//   accelerations CALLS      qdd at the first state
+//   bytes CALLS              heap in use after the preparation of the calls, 0 if unknown
+//   make CALLS COUNT         makes COUNT calls; answers the number of right-hand sides of one call
+//   burst CALLS SECONDS      nanoseconds of a right-hand side, one number for each batch of calls
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <memory>
 #include <span>
-#include <string>
-#include <vector>
+#include <utility>
 
 #include "conversation.hpp"
 
@@ -28,20 +30,23 @@ struct Scene {
   std::size_t states() const { return q.size() / n(); }
 };
 
-class Calls {
+class Calls : public Prepared {
  public:
-  virtual ~Calls() = default;
+  std::string burst(double seconds) final;
+  std::string tell(const std::string& word, std::istream& rest) final;
+  std::size_t bytes = 0;  // of the heap, held since the preparation
+
   virtual void make(int count) = 0;                 // timed; each call waits for the one before
   virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
   virtual double right_hand_sides() { return 1; }   // in one call
+
+ private:
+  int count_ = 0;  // calls in a batch
 };
 
-struct ForwardDynamics {
-  std::string name, label, about;
-  std::function<std::unique_ptr<Calls>(const Scene&)> prepare;
-};
-
-std::vector<ForwardDynamics> forward_dynamics();
+using PrepareCalls = std::function<std::unique_ptr<Calls>(const Scene&)>;
+Contender forward_dynamics(std::string name, std::string label, std::string about,
+                           PrepareCalls prepare);
 
 // The next state. The acceleration is never NaN here, but the processor has to wait for it, as the
 // next stage of a step has to.

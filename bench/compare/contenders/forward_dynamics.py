@@ -1,4 +1,4 @@
-"""The contenders of forward dynamics: programs that answer requests (see forward_dynamics.cpp)."""
+"""The contenders of forward dynamics: programs that answer requests (see forward_dynamics.hpp)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from chain_scenes import Array, ChainScene
 
-from contenders.conversation import Conversation, find_executable, words
+from contenders.conversation import Conversation, Prepared, find_executable, words
 
 PROGRAMS = tuple(
     f"forward_dynamics_{side}"
@@ -21,34 +21,21 @@ PROGRAMS = tuple(
 def described(scene: ChainScene) -> str:
     """Write the scene as the programs read it."""
     n_states, n = scene.q.shape
-    return " ".join(
-        [
-            *(scene.effect, str(n), str(n_states), words(scene.masses), words(scene.lengths)),
-            *(repr(scene.gravity), words(scene.q.flat), words(scene.qd.flat)),
-        ]
-    )
+    described = [scene.effect, str(n), str(n_states), words(scene.masses), words(scene.lengths)]
+    described += [repr(scene.gravity), words(scene.q.flat), words(scene.qd.flat)]
+    return " ".join(described)
 
 
-@dataclass(frozen=True, slots=True)
-class Calls:
-    """Calls of a scene's right-hand side, prepared."""
-
-    conversation: Conversation
-    number: str
-
-    def burst(self, seconds: float) -> list[float]:
-        """Call for about that long and list the seconds of a right-hand side, batch by batch."""
-        answer = self.conversation.ask(f"burst {self.number} {seconds}")
-        return [1e-9 * float(nanoseconds) for nanoseconds in answer.split()]
+class Calls(Prepared):
+    """Calls of a scene's right-hand side; a burst lists the seconds of a right-hand side."""
 
     def bytes(self) -> int | None:
         """Return the bytes of the heap that the preparation holds, if that is known."""
-        return int(self.conversation.ask(f"bytes {self.number}")) or None
+        return int(self.ask("bytes")) or None
 
     def accelerations(self) -> Array:
         """Return qdd (n,) at the first of the scene's states."""
-        answer = self.conversation.ask(f"accelerations {self.number}")
-        return np.array(answer.split(), dtype=np.float64)
+        return np.array(self.ask("accelerations").split(), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +46,9 @@ class ForwardDynamics:
     label: str
     about: str
     conversation: Conversation
+
+    def facts(self) -> dict[str, str]:
+        return {"label": self.label, "about": self.about}
 
     def prepare(self, scene: ChainScene) -> Calls:
         number = self.conversation.ask(f"prepare {self.name} {described(scene)}")

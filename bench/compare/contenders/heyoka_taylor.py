@@ -27,10 +27,11 @@ def tolerance_of(order: int) -> float:
     return math.exp(-2.0 * (order - 1)) * (1 + 1e-9)
 
 
-def system(case: Case) -> list[tuple[Any, Any]]:
+def system(case: Case, drive: Any = 0.0) -> list[tuple[Any, Any]]:
+    """Return the equations; `drive` is a torque in joint 1 of two rods, N m."""
     names = [f"{kind}{i}" for kind in ("q", "w") for i in range(case.n)]
     variables = [heyoka.expression(name) for name in names]
-    found = accelerations(case, heyoka.sin, heyoka.cos)(*variables)
+    found = accelerations(case, heyoka.sin, heyoka.cos, drive)(*variables)
     return list(zip(variables, [*variables[case.n :], *found], strict=True))
 
 

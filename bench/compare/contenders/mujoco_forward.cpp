@@ -104,20 +104,21 @@ class WholeRun : public MujocoCalls {
 };
 
 template <class Kind>
-ForwardDynamics entry(const std::string& word, const std::string& label, const std::string& about) {
-  return {"mujoco_" + word, "MuJoCo " + label,
-          std::string("MuJoCo ") + mj_versionString() + " " + about + ", all else disabled, " +
-              CONTENDER_BUILD,
-          [](const Scene& scene) -> std::unique_ptr<Calls> {
-            if (scene.n() > longest)
-              throw Unsupported("its mass matrix is dense, and its time grows with n^3");
-            return std::make_unique<Kind>(scene);
-          }};
+Contender entry(const std::string& word, const std::string& label, const std::string& about) {
+  return forward_dynamics(
+      "mujoco_" + word, "MuJoCo " + label,
+      std::string("MuJoCo ") + mj_versionString() + " " + about + ", all else disabled, " +
+          CONTENDER_BUILD,
+      [](const Scene& scene) -> std::unique_ptr<Calls> {
+        if (scene.n() > longest)
+          throw Unsupported("its mass matrix is dense, and its time grows with n^3");
+        return std::make_unique<Kind>(scene);
+      });
 }
 
 }  // namespace
 
-std::vector<ForwardDynamics> forward_dynamics() {
+std::vector<Contender> contenders() {
   return {entry<Forward>("forward", "mj_forward", "mj_forwardSkip without sensors"),
           entry<Parts>("parts", "parts of mj_forward",
                        "mj_kinematics, comPos, crb, factorM, comVel, rne, solveM"),

@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-#include "contender.hpp"
+#include "solves.hpp"
 #include "unit_rods.hpp"
 
 namespace contenders {
@@ -110,14 +110,14 @@ class OdeintRun : public Run {
 
 template <class Method>
 Contender odeint(const std::string& name, const std::string& method, const std::string& output) {
-  return {"odeint_" + name, "Boost.odeint " + method + ", C++",
-          "Boost.odeint " BOOST_LIB_VERSION ", " + output + ", " CONTENDER_BUILD,
-          [](const Case& given, double tolerance) {
-            return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
-              return std::make_unique<OdeintRun<Method, std::decay_t<decltype(rods)>>>(rods, given,
-                                                                                       tolerance);
-            });
-          }};
+  return solver("odeint_" + name, "Boost.odeint " + method + ", C++",
+                "Boost.odeint " BOOST_LIB_VERSION ", " + output + ", " CONTENDER_BUILD,
+                [](const Case& given, double tolerance) {
+                  return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
+                    using Rods = std::decay_t<decltype(rods)>;
+                    return std::make_unique<OdeintRun<Method, Rods>>(rods, given, tolerance);
+                  });
+                });
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "arithmetic/instruction_set.hpp"
-#include "contender.hpp"
+#include "solves.hpp"
 
 namespace contenders {
 namespace {
@@ -69,12 +69,12 @@ class CoreRun : public Run {
 };
 
 Contender core(const std::string& method) {
-  return {"pendcore_" + method + "_cpp", "pendcore " + method + ", C++",
-          "pendcore::simulate, method " + method + ", " + name(pendcore::instruction_set()) +
-              ", " CONTENDER_BUILD,
-          [method](const Case& given, double setting) {
-            return std::make_unique<CoreRun>(given, method.c_str(), setting);
-          }};
+  return solver("pendcore_" + method + "_cpp", "pendcore " + method + ", C++",
+                "pendcore::simulate, method " + method + ", " + name(pendcore::instruction_set()) +
+                    ", " CONTENDER_BUILD,
+                [method](const Case& given, double setting) {
+                  return std::make_unique<CoreRun>(given, method.c_str(), setting);
+                });
 }
 
 }  // namespace

@@ -173,17 +173,18 @@ const std::string registered =
     ", " + std::to_string(std::variant_size_v<pendcore::AnyLaw>) + " laws registered, ";
 
 template <class Kind>
-ForwardDynamics entry(const std::string& name, const std::string& label, const std::string& about) {
-  return {name, label, about + registered + CONTENDER_BUILD,
-          [](const Scene& given) { return std::make_unique<Kind>(given); }};
+Contender entry(const std::string& name, const std::string& label, const std::string& about) {
+  return forward_dynamics(name, label, about + registered + CONTENDER_BUILD,
+                          [](const Scene& given) { return std::make_unique<Kind>(given); });
 }
 
 }  // namespace
 
-std::vector<ForwardDynamics> forward_dynamics() {
+std::vector<Contender> contenders() {
   return {entry<RightHandSides>("pendcore", "pendcore", "pendcore::accelerations_in_force"),
           entry<Steps>("pendcore_step", "pendcore in a step", "attempted steps of dopri5"),
-          {"pendcore_kernel", "pendcore's kernel", "steps of its type", steps_of_kernel},
+          forward_dynamics("pendcore_kernel", "pendcore's kernel", "steps of its type",
+                           steps_of_kernel),
           entry<WholeRuns>("pendcore_run", "pendcore in a run",
                            "pendcore::simulate, dopri5, 5 s, rtol = atol = 1e-9")};
 }

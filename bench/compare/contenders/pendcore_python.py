@@ -9,8 +9,17 @@ import pendcore as pc
 from cases import Case
 from pendcore import _core
 
-from contenders.contender import Contender, Outcome, PythonRun
-from contenders.pendcore_methods import FIXED, settings_of
+from contenders.contender import Contender, Outcome, PythonRun, fixed_steps, tolerances
+
+FIXED = {method["name"] for method in _core.methods() if method["error_order"] == 0}
+FINEST = {"dop853": 15, "taylor": 16}  # where smaller tolerances still bring smaller errors
+
+
+def settings_of(method: str) -> Callable[[int], list[float]]:
+    """Map the number of settings per decade to the settings: tolerances, or fixed steps."""
+    if method in FIXED:
+        return lambda per_decade: fixed_steps(0.1, 1e-4, 2 * per_decade)
+    return lambda per_decade: tolerances(FINEST.get(method, 13), per_decade)
 
 
 def scene_of(case: Case) -> pc.Scene:

@@ -81,22 +81,23 @@ class PinocchioCalls : public Calls {
   Eigen::VectorXd tau_;
 };
 
-ForwardDynamics entry(const std::string& word, pin::Convention convention) {
-  return {"pinocchio_" + word + "_" CONTENDER_SUFFIX,
-          "Pinocchio ABA, " + word + " frames, " CONTENDER_ARCHITECTURE,
-          "Pinocchio " PINOCCHIO_VERSION " aba, Convention of " + word +
-              " frames, collection of one joint type, " CONTENDER_BUILD,
-          [convention](const Scene& scene) -> std::unique_ptr<Calls> {
-            if (scene.effect != "none") throw Unsupported("its ABA has no effects of its own");
-            if (scene.n() > longest)
-              throw Unsupported("its Data holds 6 n^3 doubles, 0.4 GB at n = 200");
-            return std::make_unique<PinocchioCalls>(scene, convention);
-          }};
+Contender entry(const std::string& word, pin::Convention convention) {
+  return forward_dynamics("pinocchio_" + word + "_" CONTENDER_SUFFIX,
+                          "Pinocchio ABA, " + word + " frames, " CONTENDER_ARCHITECTURE,
+                          "Pinocchio " PINOCCHIO_VERSION " aba, Convention of " + word +
+                              " frames, collection of one joint type, " CONTENDER_BUILD,
+                          [convention](const Scene& scene) -> std::unique_ptr<Calls> {
+                            if (scene.effect != "none")
+                              throw Unsupported("its ABA has no effects of its own");
+                            if (scene.n() > longest)
+                              throw Unsupported("its Data holds 6 n^3 doubles, 0.4 GB at n = 200");
+                            return std::make_unique<PinocchioCalls>(scene, convention);
+                          });
 }
 
 }  // namespace
 
-std::vector<ForwardDynamics> forward_dynamics() {
+std::vector<Contender> contenders() {
   return {entry("local", pin::Convention::LOCAL), entry("world", pin::Convention::WORLD)};
 }
 

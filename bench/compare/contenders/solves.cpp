@@ -1,26 +1,9 @@
-// A program of C++ contenders that solve cases; compiled.py speaks to it:
-//
-//   names                    the contenders
-//   about NAME               label: version and settings
-//   prepare NAME SETTING n masses lengths gravity damping stiffness rest controller start n_t times
-//                            the number of the run
-//   outcome RUN              right-hand sides, steps, then the states; or `failed` and the reason
-//   burst RUN SECONDS        nanoseconds of each call; the first of several only warms up
+#include "solves.hpp"
+
 #include <chrono>
-#include <cstddef>
-#include <string>
-#include <vector>
 
-#include "contender.hpp"
-
+namespace contenders {
 namespace {
-
-using namespace contenders;
-
-const std::vector<Contender>& list() {
-  static const std::vector<Contender> all = contenders::contenders();
-  return all;
-}
 
 Case read_case(std::istream& in) {
   Case given;
@@ -37,22 +20,15 @@ Case read_case(std::istream& in) {
   return given;
 }
 
-std::string outcome(Run& run) {
-  run.solve();
-  const auto states = run.states();
-  if (states.empty()) return "failed " + run.failure();
-  const std::string found = words({states.begin(), states.end()});
-  const Counts counted = run.counts();
-  return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) + found;
-}
+}  // namespace
 
-std::string burst(Run& run, double seconds) {
+std::string Run::burst(double seconds) {
   using Clock = std::chrono::steady_clock;
   std::vector<long long> taken;
   const auto begin = Clock::now();
   for (;;) {
     const auto before = Clock::now();
-    run.solve();
+    solve();
     const auto after = Clock::now();
     taken.push_back(std::chrono::duration_cast<std::chrono::nanoseconds>(after - before).count());
     if (std::chrono::duration<double>(after - begin).count() >= seconds) break;
@@ -63,31 +39,22 @@ std::string burst(Run& run, double seconds) {
   return line;
 }
 
-std::string answer(std::istream& request, std::vector<std::unique_ptr<Run>>& runs) {
-  std::string word, name;
-  request >> word;
-  if (word == "names") return names(list());
-  if (word == "about") {
-    request >> name;
-    return about(list(), name);
-  }
-  if (word == "prepare") {
-    request >> name;
-    const double setting = read_number(request);
-    runs.push_back(find(list(), name).prepare(read_case(request), setting));
-    return std::to_string(runs.size() - 1);
-  }
-  if (word == "outcome") return outcome(*runs.at(read_count(request)));
-  if (word == "burst") {
-    Run& run = *runs.at(read_count(request));
-    return burst(run, read_number(request));
-  }
-  throw std::invalid_argument("no such request: " + word);
+std::string Run::tell(const std::string& word, std::istream& /*rest*/) {
+  if (word != "outcome") throw std::invalid_argument("no such request: " + word);
+  solve();
+  const auto found = states();
+  if (found.empty()) return "failed " + failure();
+  const std::string numbers = words({found.begin(), found.end()});
+  const Counts counted = counts();
+  return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) + numbers;
 }
 
-}  // namespace
-
-int main() {
-  std::vector<std::unique_ptr<Run>> runs;
-  return converse([&runs](std::istream& request) { return answer(request, runs); });
+Contender solver(std::string name, std::string label, std::string about, PrepareRun prepare) {
+  return {std::move(name), std::move(label), std::move(about),
+          [prepare = std::move(prepare)](std::istream& in) -> std::unique_ptr<Prepared> {
+            const double setting = read_number(in);
+            return prepare(read_case(in), setting);
+          }};
 }
+
+}  // namespace contenders

@@ -17,7 +17,7 @@
 #include <cstring>
 #include <vector>
 
-#include "contender.hpp"
+#include "solves.hpp"
 #include "unit_rods.hpp"
 
 namespace contenders {
@@ -195,15 +195,15 @@ class CvodeRun : public SundialsRun<Rods> {
 template <template <class> class Kind, class Choice>
 Contender sundials(const std::string& name, const std::string& label, const std::string& how,
                    Choice choice) {
-  return {name, label + ", C++",
-          "SUNDIALS " SUNDIALS_VERSION " as Debian builds it, " + how +
-              "; right-hand side: " CONTENDER_BUILD,
-          [choice](const Case& given, double tolerance) {
-            return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
-              return std::make_unique<Kind<std::decay_t<decltype(rods)>>>(rods, given, tolerance,
-                                                                          choice);
-            });
-          }};
+  return solver(name, label + ", C++",
+                "SUNDIALS " SUNDIALS_VERSION " as Debian builds it, " + how +
+                    "; right-hand side: " CONTENDER_BUILD,
+                [choice](const Case& given, double tolerance) {
+                  return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
+                    using Rods = std::decay_t<decltype(rods)>;
+                    return std::make_unique<Kind<Rods>>(rods, given, tolerance, choice);
+                  });
+                });
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "contender.hpp"
+#include "solves.hpp"
 
 namespace contenders {
 

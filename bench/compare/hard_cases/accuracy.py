@@ -1,0 +1,202 @@
+"""Hard cases of accuracy: a long run, a shaken pivot, a fall from upright, a separatrix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from math import cos, pi, sin
+from typing import Any
+
+import mpmath
+import numpy as np
+from mpmath import ellipk, mp, mpf, sqrt
+
+from hard_cases.outcome import Outcome
+from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene
+from hard_cases.rods import Array, G, two_rods
+
+
+class Drift(Scene):
+    """The energy of the textbook's case over 2000 s."""
+
+    links, mass, gravity = 2, 1.0, G
+    start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 2000.0)
+    times = np.linspace(0, span[1], 201)
+    rates = staticmethod(two_rods())  # type: ignore[assignment]
+    system = ("textbook", ())
+    settings = {"pendcore": {"t_eval": times}, "mujoco": {"every": times[1]}}  # noqa: RUF012
+
+    def energy(self, states: Any) -> Array:
+        """Return the energy, J, in states (..., 4)."""
+        q1, q2, w1, w2 = np.moveaxis(np.asarray(states), -1, 0)
+        kinetic = 2 / 3 * w1**2 + w2**2 / 6 + np.cos(q1 - q2) * w1 * w2 / 2
+        return np.asarray(kinetic - G * (1.5 * np.sin(q1) + 0.5 * np.sin(q2)))
+
+    def judge(self, states: Any, words: str) -> Outcome:
+        """Judge the largest drift at the times, as a share of the energy at the start."""
+        at_start = self.energy((*self.start, *self.speeds))
+        error = float(np.abs(self.energy(states) / at_start - 1).max())
+        return Outcome(error=error, said=words)
+
+    def judged(self, motion: Motion) -> Outcome:
+        return self.judge(motion.y, motion.words)
+
+    def scipy(self, **how: Any) -> Outcome:
+        motion = self.by_scipy(**how, t_eval=self.times)
+        return self.judge(motion.y, f"{motion.raw.nfev} evaluations")
+
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judge(self.by_odeint(times=self.times, **how).y, "integrate_times")
+
+
+class ShakenPivot(Scene):
+    """A rod upright on a pivot that shakes up and down, and the frequency at which it stands.
+
+    theta'' = (3/2L) (g - eps w^2 cos wt) sin theta. With tau = wt/2 small swings obey Mathieu's
+    equation, theta'' + (a - 2 q cos 2 tau) theta = 0, with a = -6 g/(L w^2) and q = -3 eps/L. The
+    border is where a is the lowest characteristic value a_0(q), the least eigenvalue of an infinite
+    tridiagonal matrix.
+    """
+
+    mass, gravity, hanging = 1.0, G, False
+    eps = 0.2  # m; the rod has 1 m
+    small = 1e-5  # rad from upright; the nonlinear part is its square, relatively
+    zero, start = UPRIGHT, (small,)
+    settings = {"pendcore": {"store": "end"}}  # noqa: RUF012
+
+    @property
+    def border(self) -> float:
+        size = np.arange(30)
+        beside = np.full(29, 3 * self.eps)
+        beside[0] *= np.sqrt(2)
+        matrix = np.diag(4.0 * size**2) + np.diag(beside, 1) + np.diag(beside, -1)
+        return float(np.sqrt(-6 * G / np.linalg.eigvalsh(matrix)[0]))
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        return {"border": self.border}
+
+    def reference(self) -> dict[str, list[float]]:
+        return {"w": [self.border]}
+
+    def outcome(self, run: Callable[[], Motion]) -> Outcome:
+        """Seek the frequency at which a small angle is the same again after a period of the drive.
+
+        The equation is even in time. Therefore the trace of the map over a period is twice the
+        ratio of the two angles, and the trace is 2 at the border.
+        """
+        from scipy.optimize import brentq
+
+        def grown(w: float) -> float:
+            self.w, self.span = w, (0.0, 2 * pi / w)
+            return float(run().y[-1, 0]) / self.small - 1
+
+        w = brentq(grown, 0.9 * self.border, 1.1 * self.border, xtol=1e-13)
+        return Outcome(error=abs(w / self.border - 1), said=f"stands from {w:.10f} rad/s on")
+
+    def effects(self, fx: Any) -> list[Any]:
+        shaking = fx.Sinusoid(amplitude=self.eps, angular_frequency=self.w, phase=pi / 2)
+        return [fx.DrivenPivot(y=shaking)]
+
+    @property
+    def system(self) -> tuple[str, Sequence[float]]:  # type: ignore[override]
+        return "shaken", (G, self.eps, self.w)
+
+    def rates(self, t: float, y: Array) -> tuple[float, float]:
+        return y[1], 1.5 * (G - self.eps * self.w**2 * cos(self.w * t)) * sin(y[0])
+
+    def couple(self, data: Any) -> Any:
+        """Return the torque of the pivot's acceleration, in the frame of the pivot."""
+        return -0.5 * self.eps * self.w**2 * cos(self.w * data.time) * sin(data.qpos[0])
+
+    def mujoco(self, steps: int) -> Outcome:
+        return self.outcome(lambda: self.by_mujoco(self.span[1] / steps, "RK4", fitted=True))
+
+
+class Upright(Scene):
+    """Two rods that stand a billionth of a radian off upright, and the time of their fall."""
+
+    links, mass, gravity, hanging = 2, 1.0, G, False
+    start, speeds, span = (UPRIGHT + 1e-9,) * 2, (0.0, 0.0), (0.0, 6.0)
+    rates = staticmethod(two_rods())  # type: ignore[assignment]
+    system = ("textbook", ())
+    settings = {"scipy": {"dense_output": True}}  # noqa: RUF012
+
+    @cache  # noqa: B019
+    def fall_time(self) -> float:
+        """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double start."""
+        with mp.workdps(25):
+            g, cosine, sine = mpf(G), mpmath.cos, mpmath.sin
+
+            def rates(_: Any, y: Any) -> list[Any]:
+                a12, h = cosine(y[0] - y[1]) / 2, sine(y[0] - y[1]) / 2
+                r1 = 3 * g * cosine(y[0]) / 2 - h * y[3] ** 2
+                r2 = g * cosine(y[1]) / 2 + h * y[2] ** 2
+                det = mpf(4) / 9 - a12**2
+                return [y[2], y[3], (r1 / 3 - a12 * r2) / det, (4 * r2 / 3 - a12 * r1) / det]
+
+            motion = mpmath.odefun(rates, 0, [*map(mpf, self.start), 0, 0])
+
+            def off(t: Any) -> Any:
+                return max(abs(x - mpf(UPRIGHT)) for x in motion(t)[:2]) - 1
+
+            t = mpf(1)
+            while off(t) < 0:
+                t += mpf(1) / 10
+            bracket = (t - mpf(1) / 10, t)
+            return float(mpmath.findroot(off, bracket, solver="anderson", tol=1e-30))
+
+    def reference(self) -> dict[str, list[float]]:
+        return {"t": [self.fall_time()]}
+
+    def judge(self, t: float) -> Outcome:
+        return Outcome(error=abs(t - self.fall_time()), said=f"{t:.9f} s")
+
+    def judged(self, motion: Motion) -> Outcome:
+        """Find when the distance is first 1 rad, bisected between two of the times."""
+
+        def fallen(t: float) -> bool:
+            return bool(np.abs(motion.at(np.array([t]))[0, :2] - UPRIGHT).max() > 1)
+
+        after = next(k for k, t in enumerate(motion.t) if fallen(t))
+        low, high = motion.t[after - 1], motion.t[after]
+        for _ in range(80):
+            middle = (low + high) / 2
+            low, high = (low, middle) if fallen(middle) else (middle, high)
+        return self.judge(float(high))
+
+    def mujoco(self, dt: float, integrator: str) -> Outcome:
+        motion = self.by_mujoco(dt, integrator)
+        off = np.abs(motion.y[:, :2] - UPRIGHT).max(axis=1)
+        if not (off > 1).any():
+            return Outcome(said="does not fall", right=False)
+        k = int(np.argmax(off > 1))
+        return self.judge(float(motion.t[k] - dt * (off[k] - 1) / (off[k] - off[k - 1])))
+
+    def odeint(self, **how: Any) -> Outcome:
+        return self.judge(self.task(**how).ask("fallen", UPRIGHT, self.span[1])["t"][0])
+
+
+class Separatrix(Scene):
+    """A swing next to the separatrix: modulus 0.999999, 0.16 degrees short of upright."""
+
+    mass, gravity = 1.0, G
+    amplitude = float(2 * np.arcsin(0.999999))
+    zero, sign, start = HANGING, -1.0, (amplitude,)
+    system = ("pendulum", [G])
+    settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
+    with mp.workdps(30):
+        modulus = mpmath.sin(mpf(amplitude) / 2)
+        span = (0.0, float(4 * ellipk(modulus**2) * sqrt(2 / (3 * mpf(G)))))
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        return {"period": self.span[1]}
+
+    def judged(self, motion: Motion) -> Outcome:
+        """Judge how far the rod is from its start after a period."""
+        off = float(abs(motion.y[-1, 0] - self.amplitude))
+        return Outcome(error=off, said=f"{off:.1e} rad off after a period")
+
+    def rates(self, t: float, y: Array) -> list[float]:
+        return [y[1], -1.5 * G * np.sin(y[0])]
