@@ -44,9 +44,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     functions: dict[str, list[Case]] = {}
+    numbers: dict[tuple[str, str, int], int] = {}
     for item in items:
         if item.get_closest_marker("whole") is None:
-            functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item))
+            functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item, numbers))
     values, share = config.getoption("values"), config.getoption("share")
     kept = set()
     for name in every(functions, share):
@@ -58,12 +59,19 @@ def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 
 class Case:
-    """Describe a test as `few` needs it."""
+    """Describe a test as `few` needs it.
 
-    def __init__(self, item: pytest.Item) -> None:
+    `numbers` counts the values of each parameter as they are met; the `indices` of pytest 9.2 count
+    cases.
+    """
+
+    def __init__(self, item: pytest.Item, numbers: dict[tuple[str, str, int], int]) -> None:
         self.nodeid = item.nodeid
-        callspec = getattr(item, "callspec", None)
-        self.indices: dict[str, int] = dict(callspec.indices) if callspec else {}
+        function, callspec = item.nodeid.partition("[")[0], getattr(item, "callspec", None)
+        self.indices: dict[str, int] = {
+            name: numbers.setdefault((function, name, id(value)), len(numbers))
+            for name, value in (callspec.params if callspec else {}).items()
+        }
         marks = item.iter_markers("every_value")
         self.kept_whole = frozenset(name for mark in marks for name in mark.args)
 

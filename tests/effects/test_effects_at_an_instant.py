@@ -44,7 +44,7 @@ COUPLES: list[tuple[str, dict[str, Any], float]] = [  # at 0.4 s, -2.4 rad and -
 ]
 
 
-@pytest.mark.every_value("kind")
+@pytest.mark.every_value("told")
 @pytest.mark.parametrize(("kind", "told", "couple"), COUPLES)
 def test_a_couple_turns_a_rod_of_1_kg_m2(kind: str, told: dict[str, Any], couple: float) -> None:
     """The core's law and the reference's."""
@@ -146,10 +146,9 @@ def test_a_spline_of_three_knots_is_the_natural_cubic():
     assert sol.reactions()[:, 0, 1] == pytest.approx(1.7 * 3 * t, abs=1e-14)
 
 
-# Signs of another source, as conventions.md has them: an arm that counts
-# counter-clockwise, the planar elbow manipulator of Spong, Hutchinson, Vidyasagar, Robot Modeling
-# and Control (2006), section 7.4.
-# Its angles psi are relative, psi_1 from +x, and y points upward.
+# Signs of another source, as conventions.md has them: an arm that counts counter-clockwise, the
+# planar elbow manipulator of Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006),
+# section 7.4. Its angles psi are relative, psi_1 from +x, and y points upward.
 MASS, LENGTH, CENTER, INERTIA = (1.3, 0.8), (0.7, 0.5), (0.3, 0.2), (0.05, 0.02)
 G = 9.81
 KP, KD = 20.0, 3.0

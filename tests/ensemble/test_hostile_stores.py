@@ -234,7 +234,7 @@ CHANGED += [  # more blocks than a folder holds
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("name")
+@pytest.mark.every_value("values")
 @pytest.mark.parametrize(("name", "values", "told"), CHANGED)
 def test_what_could_do_harm_is_refused(tmp_path, timed, name, values, told):
     path = tmp_path / "a.zarr"
