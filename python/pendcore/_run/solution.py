@@ -110,6 +110,11 @@ class Solution:
         return self._run.states.T
 
     @property
+    def t_span(self) -> tuple[float, float]:
+        """Start and end as they were asked for, s."""
+        return self._run.arguments["t_start"], self._run.arguments["t_end"]
+
+    @property
     def t_reached(self) -> float:
         """The time to which the run came, s: its end, or where it broke off.
 

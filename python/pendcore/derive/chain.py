@@ -14,7 +14,7 @@ from itertools import pairwise
 from sympy import Expr, Integer, Symbol, cos, diff, expand, sin
 from sympy.simplify.fu import TR8
 
-from pendcore.derive.notation import Notation
+from pendcore.derive.notation import DOTTED, Notation
 from pendcore.derive.writing import ACCELERATION, ANGLE, RATE
 
 Vector = tuple[Expr, Expr]
@@ -61,54 +61,39 @@ class Chain:
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:
-        self.notation = notation
+        self.notation = s = notation
         self.path: dict[Symbol, Expr] = {}
-        self._rates: dict[Symbol, Expr] = {}
-        x, y = (self._along(axis, law) for axis, law in zip("xy", path, strict=True))
-        self.pivot: Vector = (x, y)
+        self._rates: dict[Symbol, Expr] = {s.t: Integer(1)}
+        for rows in ((s.q, s.qd), (s.qd, s.qdd)):
+            self._rates |= dict(zip(*rows, strict=True))
+        self.pivot: Vector = self._along("x", path[0]), self._along("y", path[1])
 
     def _along(self, axis: str, law: Expr) -> Expr:
         if law == 0:
             return law
-        dots = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}
         symbols = [
-            self.notation.symbol(
-                f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k]
-            )
-            for k, shown in dots.items()
+            self.notation.symbol(f"{axis}{dots}_A", f"{shown.format(axis)}_{{A}}", kind)
+            for (dots, shown), kind in zip(DOTTED.items(), (ANGLE, RATE, ACCELERATION), strict=True)
         ]
-        for k, symbol in enumerate(symbols):
-            self.path[symbol] = law.diff(self.notation.t, k)
+        self.path |= {symbol: law.diff(self.notation.t, k) for k, symbol in enumerate(symbols)}
         self._rates |= dict(pairwise(symbols))
         return symbols[0]
 
     def rate(self, expression: Expr) -> Expr:
         """Differentiate with respect to time, of which angles, rates and pivot are functions."""
-        s = self.notation
-        moving = {s.t: Integer(1), **self._rates}
-        moving |= {**dict(zip(s.q, s.qd, strict=True)), **dict(zip(s.qd, s.qdd, strict=True))}
-        return sum((diff(expression, x) * rate for x, rate in moving.items()), Integer(0))
+        return sum((diff(expression, x) * rate for x, rate in self._rates.items()), Integer(0))
 
     def velocity(self, point: Vector) -> Vector:
         """Return the velocity of a point, m/s."""
         return expand(self.rate(point[0])), expand(self.rate(point[1]))
-
-    def acceleration(self, point: Vector) -> Vector:
-        """Return the acceleration of a point, m/s^2."""
-        return self.velocity(self.velocity(point))
 
     @property
     def pivot_is_fixed(self) -> bool:
         """Whether the pivot stays at the origin."""
         return self.pivot == (0, 0)
 
-    def along(self, link: int) -> Vector:
-        """Return the unit vector along a link, u_i; links count from 1."""
-        angle = self.notation.q[link - 1]
-        return cos(angle), sin(angle)
-
     def across(self, link: int) -> Vector:
-        """Return the unit vector across a link, n_i = du_i/dq_i."""
+        """Return the unit vector across a link, n_i = du_i/dq_i; links count from 1."""
         angle = self.notation.q[link - 1]
         return -sin(angle), cos(angle)
 
@@ -128,7 +113,7 @@ class Chain:
     def joints(self) -> tuple[Vector, ...]:
         """P_0, ..., P_n: pivot, joints and tip, m."""
         points = [self.pivot]
-        for i, length in enumerate(self.notation.lengths, start=1):
+        for i, length in enumerate(self.notation.lengths):
             points.append(self._beyond(points[-1], i, length))
         return tuple(points)
 
@@ -136,8 +121,8 @@ class Chain:
     def centers(self) -> tuple[Vector, ...]:
         """C_1, ..., C_n: mass centres of the links, m."""
         return tuple(
-            self._beyond(self.joints[i - 1], i, distance)
-            for i, distance in enumerate(self.notation.centers, start=1)
+            self._beyond(self.joints[i], i, distance)
+            for i, distance in enumerate(self.notation.centers)
         )
 
     @cached_property
@@ -160,9 +145,9 @@ class Chain:
         """The acceleration of P_n, where a payload is, m/s^2."""
         return self.velocity(self.joint_velocities[-1])
 
-    def _beyond(self, point: Vector, link: int, distance: Expr) -> Vector:
-        along = self.along(link)
-        return point[0] + distance * along[0], point[1] + distance * along[1]
+    def _beyond(self, point: Vector, i: int, distance: Expr) -> Vector:
+        angle = self.notation.q[i]
+        return point[0] + distance * cos(angle), point[1] + distance * sin(angle)
 
     @staticmethod
     def _relative(absolute: tuple[Symbol, ...], joint: int) -> Expr:

@@ -13,7 +13,7 @@ from typing import Any
 from sympy import Expr, Integer, Symbol, expand
 
 from pendcore.derive.chain import Vector, dot, of_differences
-from pendcore.derive.solution import Solution
+from pendcore.derive.motion import Motion
 
 
 class Energy:
@@ -21,13 +21,12 @@ class Energy:
 
     Parameters
     ----------
-    solution : Solution
-        The accelerations.
+    motion : Motion
+        The equations of motion, solved.
     """
 
-    def __init__(self, solution: Solution) -> None:
-        self.solution = solution
-        self.motion = motion = solution.motion
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
         self.equations = motion.equations
         self.chain = motion.equations.chain
         self.notation = motion.notation
@@ -96,7 +95,7 @@ class Energy:
             unbalanced += rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
         left = (residual - unbalanced).xreplace(torques).subs(locked)
         left = of_differences(left.xreplace(self.chain.path))
-        return left + self.solution.power_of_the_error()
+        return left + self.motion.power_of_the_error()
 
     def _locked_rates(self) -> dict[Symbol, Expr]:
         """Return, for each link beyond a lock, its rate: that of the link before the lock."""

@@ -171,6 +171,13 @@ class NewtonEuler:
         rotor = self.armatures[joint - 1] * self.chain.joint_acceleration(joint)
         return torque + self.holding.get(joint, Integer(0)) - rotor
 
+    def couples(self, link: int) -> Expr:
+        """Return the sum of the couples on a link, in its joints and from the payload, N m."""
+        found = self.joint_couple(link) - self.joint_couple(link + 1)
+        if link == self.n and self.payload is not None:
+            found -= self.payload.inertia * self.notation.qdd[link - 1]
+        return found
+
     def near_force(self, link: int) -> Vector:
         """Return the force on a link where it begins: F_01, or F_12 = -F_21."""
         x, y = self.forces[link - 1]
@@ -212,9 +219,7 @@ class NewtonEuler:
         moment += cross(minus(begin, point), near)
         for load in loads:
             moment += of_differences(load.moment + cross(minus(begin, point), load.force))
-        moment += self.joint_couple(link) - self.joint_couple(link + 1)
-        if link == self.n and self.payload is not None:
-            moment -= self.payload.inertia * turning
+        moment += self.couples(link)
         return LinkEquations((x, y), Balance(resistance * turning, expand(moment)), about_pivot)
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from sympy import Expr, Integer, Symbol
+from sympy import Expr, Integer, Symbol, sin
 
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.notation import Notation
@@ -14,23 +14,11 @@ class NotSmooth(Exception):
     """The effect has no law that is smooth; holds the reason, and what to do instead."""
 
     def __init__(self, reason: str, remedy: str) -> None:
-        super().__init__(f"{reason}: {remedy}")
-        self.reason = reason
-        self.remedy = remedy
+        super().__init__(reason, remedy)
 
 
 class LinkLoad(NamedTuple):
-    """A force on a link, and its moment.
-
-    Attributes
-    ----------
-    link : int
-        The link, counted from 1.
-    force : (Expr, Expr)
-        N; x right, y down.
-    moment : Expr
-        About the joint where the link begins, N m.
-    """
+    """A force on a link (counted from 1), N, and its moment about the link's begin, N m."""
 
     link: int
     force: Vector
@@ -60,8 +48,8 @@ class Law:
         self.effect = effect
         self.notation = notation
 
-    def sentence(self, notation: Notation) -> str:
-        """Return what a derivation says of the effect; formulas between dollars."""
+    def statement(self) -> str:
+        """Return what the effect does, in a sentence with the law's formula between dollars."""
         raise NotImplementedError
 
     def pivot(self) -> Vector | None:
@@ -103,3 +91,22 @@ class Law:
         does no work, or stores its work as energy.
         """
         return None
+
+    def sinusoid(
+        self, wave: Any, amplitude: tuple[str, str], unit: str, of: str, meaning: str
+    ) -> Expr:
+        """Return the law of a `pendcore.effects.Sinusoid`, with symbols for its numbers.
+
+        ``amplitude`` is its symbol in text and in LaTeX; ``of`` marks the other symbols.
+        """
+        s = self.notation
+        size = s.parameter(*amplitude, wave.amplitude, unit, f"amplitude of {meaning}")
+        frequency = s.parameter(
+            f"Omega_{of}", rf"\Omega_{{{of}}}", wave.angular_frequency, "rad/s",
+            f"angular frequency of {meaning}",
+        )  # fmt: skip
+        phase: Expr = Integer(0)
+        if wave.phase != 0.0:
+            name = rf"\psi_{{{of}}}"
+            phase = s.parameter(f"psi_{of}", name, wave.phase, "rad", f"phase of {meaning}")
+        return size * sin(frequency * s.t + phase)

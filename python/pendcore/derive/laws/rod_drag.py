@@ -21,6 +21,7 @@ from sympy import Abs, Expr, Integer, Symbol
 from pendcore.derive.chain import Chain, Vector, dot, minus
 from pendcore.derive.laws.law import Definition, Law, LinkLoad
 from pendcore.derive.notation import Notation
+from pendcore.derive.writing import RATE
 
 AT_REST = 1e-100
 """The speed that keeps D from 0, m/s."""
@@ -31,54 +32,50 @@ class RodDrag(Law):
 
     def __init__(self, effect: Any, notation: Notation) -> None:
         super().__init__(effect, notation)
-        i, parameter = effect.link, notation.parameter
-        rod = f"of rod {i}"
-        self.coefficient = parameter(
-            f"Cd_{i}", f"C_{{d,{i}}}", effect.drag_coefficient, "1", f"drag coefficient {rod}"
-        )
-        self.diameter = parameter(f"d_{i}", f"d_{{{i}}}", effect.diameter, "m", f"diameter {rod}")
-        self.density = parameter(
-            f"rho_{i}", rf"\rho_{{{i}}}", effect.air_density, "kg/m^3",
-            f"density of the air around rod {i}",
-        )  # fmt: skip
+        self.link = i = int(effect.link)
+
+        def parameter(name: str, latex: str, value: float, unit: str, meaning: str) -> Symbol:
+            return notation.parameter(f"{name}_{i}", f"{latex}{i}}}", value, unit, meaning)
+
+        drag, diameter, density = effect.drag_coefficient, effect.diameter, effect.air_density
+        words = f"drag coefficient of rod {i}"
+        self.coefficient = parameter("Cd", "C_{d,", drag, "1", words)
+        self.diameter = parameter("d", "d_{", diameter, "m", f"diameter of rod {i}")
+        words = f"density of the air around rod {i}"
+        self.density = parameter("rho", r"\rho_{", density, "kg/m^3", words)
         self.wind = tuple(
-            parameter(f"v{a}_{i}", f"v_{{{a},{i}}}", v, "m/s", f"wind along {a} at rod {i}")
+            parameter(f"v{axis}", f"v_{{{axis},", v, "m/s", f"wind along {axis} at rod {i}")
             if v != 0.0
             else Integer(0)
-            for a, v in zip("xy", effect.wind, strict=True)
+            for axis, v in zip("xy", effect.wind, strict=True)
         )
-        self.at_rest = parameter(
-            f"eps_{i}", rf"\varepsilon_{{{i}}}", AT_REST, "m/s", "avoids 0/0 for a rod at rest"
+        words = "avoids 0/0 for a rod at rest"
+        self.at_rest = parameter("eps", r"\varepsilon_{", AT_REST, "m/s", words)
+        self.w0, self.w1, self.force, self.moment = (
+            notation.symbol(*notation.fresh(f"{name}_{i}", f"{latex},{i}}}"))
+            for name, latex in (("w0", "w_{0"), ("w1", "w_{1"), ("Fd", "F_{d"), ("Td", "T_{d"))
         )
-        self._names: dict[str, Symbol] = {}
 
-    def sentence(self, notation: Notation) -> str:
-        """Return the words and formulas of the law."""
-        i = self.effect.link
+    def statement(self) -> str:
+        """Return the law of a length of the rod, and what stands for the integrals of it."""
+        i, write = self.link, self.notation.latex
+        w = self.notation.symbol("w", "w", RATE)
+        law = write(-self.density * self.coefficient * self.diameter * Abs(w) * w / 2)
+        air = f"the wind $({', '.join(map(write, self.wind))})$" if any(self.wind) else "the air"
         return (
-            f"The air resists the motion of link {i} across the rod: the force on a length of the "
-            "rod is quadratic in the speed of that length. The integrals of this force along the "
-            "rod are the drag and its moment about the joint where the link begins."
+            f"The air resists the motion of link {i}: the force on each length $\\mathrm{{d}}s$ of "
+            f"the rod is ${law}\\,\\mathrm{{d}}s$ along the unit vector $\\mathbf{{n}}_{{{i}}} = "
+            f"(-\\sin q_{{{i}}}, \\cos q_{{{i}}})$ across the rod, where $w$ is the speed of that "
+            f"length along $\\mathbf{{n}}_{{{i}}}$ relative to {air}. It is ${write(self.w0)}$ where "
+            f"the link begins, ${write(self.w1)}$ where the link ends, and linear between them. The "
+            f"sum of these forces is ${write(self.force)}\\,\\mathbf{{n}}_{{{i}}}$, and "
+            f"${write(self.moment)}$ is the sum of their moments about the begin of the link."
         )
-
-    def _symbol(self, letter: str, latex: str) -> Symbol:
-        """Return a symbol of this effect; another effect on the same rod gets another symbol."""
-        if letter not in self._names:
-            name, i, known = f"{letter}_{self.effect.link}", self.effect.link, 1
-            taken = {symbol.name for symbol in self.notation.latex_names}
-            while (own := name if known == 1 else f"{name}__{known}") in taken:
-                known += 1
-            shown = latex.format(i=i)
-            shown = shown if known == 1 else f"{{{shown}^{{({known})}}}}"
-            self._names[letter] = self.notation.symbol(own, shown)
-        return self._names[letter]
 
     def definitions(self, chain: Chain) -> tuple[Definition, ...]:
         """Return the speeds of the ends, and the integrals F and T."""
-        i, s = self.effect.link, self.notation
+        i, s, w0, w1 = self.link, self.notation, self.w0, self.w1
         length = s.lengths[i - 1]
-        w0 = self._symbol("w0", r"w_{{0,{i}}}")
-        w1 = self._symbol("w1", r"w_{{1,{i}}}")
         near = dot(chain.across(i), minus(chain.joint_velocities[i - 1], self.wind))
         k = self.density * self.coefficient * self.diameter / 2
         size = Abs(w0) + Abs(w1) + self.at_rest
@@ -95,24 +92,12 @@ class RodDrag(Law):
             Definition(self.moment, moment, f"its moment about the joint {begins}, N m"),
         )
 
-    @property
-    def force(self) -> Symbol:
-        """F, the force across the rod."""
-        return self._symbol("Fd", r"F_{{d,{i}}}")
-
-    @property
-    def moment(self) -> Symbol:
-        """T, the moment about the joint where the rod begins."""
-        return self._symbol("Td", r"T_{{d,{i}}}")
-
     def load(self, chain: Chain) -> LinkLoad:
         """Return F across the rod, and T."""
-        i = self.effect.link
-        across = chain.across(i)
-        return LinkLoad(i, (self.force * across[0], self.force * across[1]), self.moment)
+        x, y = chain.across(self.link)
+        return LinkLoad(self.link, (self.force * x, self.force * y), self.moment)
 
     def power(self, chain: Chain, ground_force: Vector) -> Expr:
         """Return the powers of F, at the joint where the rod begins, and of T."""
-        i = self.effect.link
-        speed = dot(chain.across(i), chain.joint_velocities[i - 1])
-        return self.force * speed + self.moment * self.notation.qd[i - 1]
+        speed = dot(chain.across(self.link), chain.joint_velocities[self.link - 1])
+        return self.force * speed + self.moment * self.notation.qd[self.link - 1]

@@ -14,7 +14,8 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pendcore.derive.report.document import Document, Reader
+from pendcore.derive.document import Document, Reader
+from pendcore.derive.report.drawing import save
 
 ENGINES = ("xelatex", "lualatex", "pdflatex")
 """LaTeX engines, in the order in which they are tried."""
@@ -78,7 +79,7 @@ def page(document: Document) -> str:
     with TemporaryDirectory() as place:
         folder = Path(place)
         for drawing in document.drawings:
-            drawing.save(drawing.path(folder, Reader.HTML))
+            save(drawing, folder / drawing.file(Reader.HTML))
         header = folder / "style.html"
         header.write_text(f"<style>\n{STYLE.read_text('utf-8')}</style>\n", encoding="utf-8")
         made = _pandoc(
@@ -110,7 +111,7 @@ def _for_browsers(text: str) -> str:
     return re.sub(r"</math>(?=[,.;:])", "</math>\N{WORD JOINER}", text)
 
 
-def pdf(document: Document, path: Path, engine: str) -> None:
+def pdf(document: Document, engine: str, path: Path) -> None:
     """Write a document as a PDF.
 
     Raises
@@ -121,10 +122,10 @@ def pdf(document: Document, path: Path, engine: str) -> None:
     with TemporaryDirectory() as place:
         folder = Path(place)
         for drawing in document.drawings:
-            drawing.save(drawing.path(folder, Reader.LATEX))
+            save(drawing, folder / drawing.file(Reader.PDF))
         (folder / "preamble.tex").write_text(PREAMBLE, encoding="utf-8")
         made = _pandoc(
-            document, Reader.LATEX, folder, "--to=latex", f"--pdf-engine={engine}",
+            document, Reader.PDF, folder, "--to=latex", f"--pdf-engine={engine}",
             f"--include-in-header={folder / 'preamble.tex'}", suffix="pdf",
         )  # fmt: skip
         shutil.copyfile(made, path)

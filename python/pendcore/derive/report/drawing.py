@@ -13,11 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats
 from pendcore.derive.report.labels import Label, place
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy.typing as npt
     from matplotlib.axes import Axes
+
+    from pendcore.derive.document import Drawing
+
+    Floats = npt.NDArray[np.float64]
 
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
@@ -40,6 +46,15 @@ def lettering() -> AbstractContextManager[None]:
     import matplotlib as mpl
 
     return mpl.rc_context(_FONT)
+
+
+def save(drawing: Drawing, path: Path) -> None:
+    """Write a picture into a file, of the kind that its suffix says, the same every time."""
+    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
+    with lettering():
+        drawing.figure.draw_without_rendering()
+        drawing.figure.set_layout_engine("none")  # every picture has the first one's layout
+        drawing.figure.savefig(path, dpi=150, metadata=dates)
 
 
 @dataclass(slots=True)

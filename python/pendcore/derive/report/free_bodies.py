@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats
-from pendcore._scene.scene import Scene
 from pendcore.derive.report import drawing
 from pendcore.derive.report.drawing import Sketch, direction, name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from pendcore import Scene
+    from pendcore.derive.report.drawing import Floats
 
 A_ROW = 3
 """The largest number of bodies side by side."""
