@@ -36,6 +36,11 @@ def minus(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1]
 
 
+def across(angle: Expr) -> Vector:
+    """Return the unit vector across a link, n = du/dq."""
+    return -sin(angle), cos(angle)
+
+
 def of_differences(expression: Expr) -> Expr:
     """Write products of sines and cosines as sines and cosines of sums: a normal form."""
     return expand(TR8(expand(expression)))
@@ -92,22 +97,11 @@ class Chain:
         """Whether the pivot stays at the origin."""
         return self.pivot == (0, 0)
 
-    def across(self, link: int) -> Vector:
-        """Return the unit vector across a link, n_i = du_i/dq_i; links count from 1."""
-        angle = self.notation.q[link - 1]
-        return -sin(angle), cos(angle)
-
-    def joint_angle(self, joint: int) -> Expr:
-        """Return the angle of a joint, phi_j = q_j - q_(j-1), rad."""
-        return self._relative(self.notation.q, joint)
-
-    def joint_rate(self, joint: int) -> Expr:
-        """Return the rate of a joint, w_j = qd_j - qd_(j-1), rad/s."""
-        return self._relative(self.notation.qd, joint)
-
-    def joint_acceleration(self, joint: int) -> Expr:
-        """Return the acceleration of a joint, rad/s^2."""
-        return self._relative(self.notation.qdd, joint)
+    def joint(self, joint: int) -> tuple[Expr, Expr, Expr]:
+        """Return phi_j = q_j - q_(j-1) of a joint, rad, its rate, and its acceleration."""
+        s, i = self.notation, joint - 1
+        phi, w, a = (x[i] - (x[i - 1] if i else 0) for x in (s.q, s.qd, s.qdd))
+        return phi, w, a
 
     @cached_property
     def joints(self) -> tuple[Vector, ...]:
@@ -148,7 +142,3 @@ class Chain:
     def _beyond(self, point: Vector, i: int, distance: Expr) -> Vector:
         angle = self.notation.q[i]
         return point[0] + distance * cos(angle), point[1] + distance * sin(angle)
-
-    @staticmethod
-    def _relative(absolute: tuple[Symbol, ...], joint: int) -> Expr:
-        return absolute[joint - 1] - (absolute[joint - 2] if joint > 1 else 0)

@@ -70,7 +70,7 @@ class Derivation:
         self.scene = scene
         self.symbols = Notation(scene)
         laws = laws_of(scene.effects, self.symbols)
-        moved = [pivot for law in laws if (pivot := law.pivot()) is not None]
+        moved = [law.pivot for law in laws if law.pivot is not None]
         x, y = (sum((pivot[k] for pivot in moved), Integer(0)) for k in (0, 1))
         self.chain = Chain(self.symbols, (x, y))
         self.equations = NewtonEuler(self.chain, laws)

@@ -29,31 +29,33 @@ class Energy:
         self.motion = motion
         self.equations = motion.equations
         self.chain = motion.equations.chain
-        self.notation = motion.notation
+        self.notation = s = motion.notation
+        bodies = [*zip(s.masses, s.inertias, s.qd, strict=True)]
+        places, velocities = [*self.chain.centers], [*self.chain.center_velocities]
+        if (payload := self.equations.payload) is not None:
+            bodies.append((payload.mass, payload.inertia, s.qd[-1]))
+            places.append(self.chain.joints[-1])
+            velocities.append(self.chain.joint_velocities[-1])
+        self._bodies = [*zip(bodies, places, velocities, strict=True)]
 
     @cached_property
     def kinetic(self) -> Expr:
         """The kinetic energy of links, payload and rotors, J."""
-        s, found = self.notation, Integer(0)
-        for i, v in enumerate(self.chain.center_velocities):
-            found += s.masses[i] * dot(v, v) / 2 + s.inertias[i] * s.qd[i] ** 2 / 2
-        if self.equations.payload is not None:
-            mass, inertia = self.equations.payload.mass, self.equations.payload.inertia
-            v = self.chain.joint_velocities[-1]
-            found += mass * dot(v, v) / 2 + inertia * s.qd[-1] ** 2 / 2
+        found = Integer(0)
+        for (mass, inertia, rate), _, v in self._bodies:
+            found += mass * dot(v, v) / 2 + inertia * rate**2 / 2
         for joint, armature in enumerate(self.equations.armatures, start=1):
-            found += armature * self.chain.joint_rate(joint) ** 2 / 2
+            found += armature * self.chain.joint(joint)[1] ** 2 / 2
         return of_differences(found)
 
     @cached_property
     def potential(self) -> Expr:
         """The potential energy of weights and springs, J; zero at the height of the origin."""
-        s = self.notation
-        heights = [m * c[1] for m, c in zip(s.masses, self.chain.centers, strict=True)]
-        if self.equations.payload is not None:
-            heights.append(self.equations.payload.mass * self.chain.joints[-1][1])
-        stored = [law.potential_energy(self.chain) for law in self.equations.laws]
-        return expand(-s.gravity * sum(heights)) + sum(stored, Integer(0))
+        found = expand(-self.notation.gravity * sum(m * y for (m, *_), (_, y), _ in self._bodies))
+        for law in self.equations.laws:
+            if law.stored is not None:
+                found += law.stored(self.chain.joint(law.effect.joint)[0])
+        return found
 
     @cached_property
     def powers_by_definitions(self) -> dict[Any, Expr]:
@@ -64,9 +66,14 @@ class Energy:
         """Return the power of each effect, W, with the ground's force on link 1 as it is given."""
         found: dict[Any, Expr] = {}
         for law in self.equations.laws:
-            power = law.power(self.chain, ground_force)
-            if power is not None:
-                found[law.effect] = found.get(law.effect, Integer(0)) + power
+            if law.power is not None:
+                power = law.power(self.chain, ground_force)
+            elif law.couple is not None and law.stored is None:
+                phi, w, _ = self.chain.joint(law.effect.joint)
+                power = law.couple(phi, w) * w
+            else:
+                continue
+            found[law.effect] = found.get(law.effect, Integer(0)) + power
         return found
 
     @cached_property
@@ -85,22 +92,15 @@ class Energy:
         equations.
         """
         s, motion = self.notation, self.motion
-        torques = {d.symbol: d.value for d in self.equations.torques}
-        locked = self._locked_rates()
-        total = self.chain.rate(self.kinetic + self.potential)
-        residual = total - sum(self.powers_by_definitions.values(), Integer(0))
-        unbalanced = Integer(0)
+        torques = {d.symbol: d.value for d in self.equations.torques.values()}
+        residual = self.chain.rate(self.kinetic + self.potential)
+        residual -= sum(self.powers_by_definitions.values(), Integer(0))
         for i, rate in enumerate(s.qd):
             line = sum(motion.mass_matrix[i, k] * a for k, a in enumerate(s.qdd))
-            unbalanced += rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
-        left = (residual - unbalanced).xreplace(torques).subs(locked)
-        left = of_differences(left.xreplace(self.chain.path))
-        return left + self.motion.power_of_the_error()
-
-    def _locked_rates(self) -> dict[Symbol, Expr]:
-        """Return, for each link beyond a lock, its rate: that of the link before the lock."""
-        s, found = self.notation, dict[Symbol, Expr]()
+            residual -= rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
+        rates = dict[Symbol, Expr]()  # of links beyond a lock: those of the links before it
         for joint in self.equations.locked:
             before = s.qd[joint - 2] if joint > 1 else Integer(0)
-            found[s.qd[joint - 1]] = found.get(before, before)
-        return found
+            rates[s.qd[joint - 1]] = rates.get(before, before)
+        left = residual.xreplace(torques).subs(rates).xreplace(self.chain.path)
+        return of_differences(left) + self.motion.power_of_the_error()

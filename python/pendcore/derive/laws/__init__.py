@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from pendcore.derive.laws.bodies import DrivenPivot, Lock, Payload, RotorInertia
-from pendcore.derive.laws.couples import Motor, TorsionalSpring, ViscousJoint
+from pendcore.derive.laws.bodies import driven_pivot, lock, payload, rotor_inertia
+from pendcore.derive.laws.couples import motor, torsional_spring, viscous_joint
 from pendcore.derive.laws.law import Definition, Law, LinkLoad, NotSmooth
-from pendcore.derive.laws.rod_drag import RodDrag
+from pendcore.derive.laws.rod_drag import rod_drag
 from pendcore.derive.notation import Notation
 
-LAWS: dict[str, type[Law]] = {
-    "driven_pivot": DrivenPivot,
-    "lock": Lock,
-    "motor": Motor,
-    "payload": Payload,
-    "rod_drag": RodDrag,
-    "rotor_inertia": RotorInertia,
-    "torsional_spring": TorsionalSpring,
-    "viscous_joint": ViscousJoint,
-}
+LAWS: dict[str, Callable[[Any, Notation], Law]] = {
+    law.__name__: law
+    for law in (
+        driven_pivot, lock, motor, payload, rod_drag, rotor_inertia, torsional_spring,
+        viscous_joint,
+    )
+}  # fmt: skip
 """The laws, by the kind of effect."""
 
 OWN = "its law is a function, which has no symbols"

@@ -7,119 +7,78 @@ from typing import Any
 from sympy import Expr, Integer
 
 from pendcore.derive.chain import Chain, Vector, dot
-from pendcore.derive.laws.law import Law, NotSmooth
+from pendcore.derive.laws.law import Law, NotSmooth, sinusoid
 from pendcore.derive.notation import Notation
 from pendcore.derive.writing import MASS
 
 
-class Payload(Law):
+def payload(effect: Any, s: Notation) -> Law:
     """A rigid body at the tip: its weight and inertia act on the last link."""
-
-    def __init__(self, effect: Any, notation: Notation) -> None:
-        super().__init__(effect, notation)
-        rank = (MASS, notation.n + 1)
-        self.mass = notation.parameter(
-            "m_p", "m_{p}", effect.mass, "kg", "mass of the payload", rank
-        )
-        self.inertia: Expr = Integer(0)
-        if effect.inertia != 0.0:
-            words = "moment of inertia of the payload about its mass centre"
-            self.inertia = notation.parameter("I_p", "I_{p}", effect.inertia, "kg m^2", words, rank)
-
-    def statement(self) -> str:
-        """Return what the payload is."""
-        mass, inertia = map(self.notation.latex, self.payload())
+    rank, inertia, turning = (MASS, s.n + 1), Integer(0), ", a point mass"
+    mass = s.parameter("m_p", "m_{p}", effect.mass, "kg", "mass of the payload", rank)
+    if effect.inertia != 0.0:
+        words = "moment of inertia of the payload about its mass centre"
+        inertia = s.parameter("I_p", "I_{p}", effect.inertia, "kg m^2", words, rank)
         turning = (
-            f"; its moment of inertia about its mass centre is ${inertia}$, and it turns with link "
-            f"{self.notation.n}"
+            f"; its moment of inertia about its mass centre is ${s.latex(inertia)}$, and it turns "
+            f"with link {s.n}"
         )
-        return (
-            f"A payload of mass ${mass}$ is fixed to the tip, where its mass centre is"
-            f"{turning if self.inertia else ', a point mass'}."
-        )
-
-    def payload(self) -> tuple[Expr, Expr]:
-        """Return the mass and the moment of inertia."""
-        return self.mass, self.inertia
+    words = f"A payload of mass ${s.latex(mass)}$ is fixed to the tip, where its mass centre is"
+    return Law(effect, f"{words}{turning}.", payload=(mass, inertia))
 
 
-class RotorInertia(Law):
+def rotor_inertia(effect: Any, s: Notation) -> Law:
     """A rotor that turns with a joint, T = J phid^2 / 2; turning it takes the couple J phidd."""
-
-    def __init__(self, effect: Any, notation: Notation) -> None:
-        super().__init__(effect, notation)
-        j = effect.joint
-        self.inertia = notation.parameter(
-            f"J_{j}", f"J_{{{j}}}", effect.armature, "kg m^2", f"inertia of the rotor at joint {j}"
-        )
-
-    def statement(self) -> str:
-        """Return what the rotor takes."""
-        joint, inertia = self.effect.joint, self.notation.latex(self.inertia)
-        return (
-            f"A rotor with the moment of inertia ${inertia}$ turns with joint {joint}, by the "
-            f"joint's angle: the joint has to supply the couple "
-            f"${inertia}\\,\\ddot{{\\varphi}}_{{{joint}}}$ that accelerates the rotor."
-        )
-
-    def armature(self) -> tuple[int, Expr]:
-        """Return the joint and the moment of inertia."""
-        return self.effect.joint, self.inertia
+    j = effect.joint
+    words = f"inertia of the rotor at joint {j}"
+    inertia = s.parameter(f"J_{j}", f"J_{{{j}}}", effect.armature, "kg m^2", words)
+    couple = rf"{s.latex(inertia)} \ddot{{\varphi}}_{{{j}}}"
+    statement = (
+        f"A rotor with the moment of inertia ${s.latex(inertia)}$ turns with joint {j}, by the "
+        f"joint's angle: the joint has to supply the couple ${couple}$ that accelerates the rotor."
+    )
+    return Law(effect, statement, armature=inertia)
 
 
-class Lock(Law):
+def lock(effect: Any, s: Notation) -> Law:
     """A locked joint: phi = constant, held by a couple that is one more unknown.
 
     The couple Lambda_j does no work; qdd_j = qdd_(j-1) is one more equation. The angle at which the
     joint is locked comes from the state.
     """
-
-    def statement(self) -> str:
-        """Return what the lock does."""
-        j = self.effect.joint
-        return (
-            f"Joint {j} is locked: a couple $\\Lambda_{{{j}}}$, one more unknown, keeps its angle "
-            f"$\\varphi_{{{j}}}$ as it is at the start."
-        )
-
-    def lock(self) -> int:
-        """Return its joint."""
-        return int(self.effect.joint)
+    j = effect.joint
+    statement = (
+        f"Joint {j} is locked: a couple $\\Lambda_{{{j}}}$, one more unknown, keeps its angle "
+        f"$\\varphi_{{{j}}}$ as it is at the start."
+    )
+    return Law(effect, statement, locks=True)
 
 
-class DrivenPivot(Law):
+def driven_pivot(effect: Any, s: Notation) -> Law:
     """A pivot that is moved: x_0 and y_0 are sinusoids of time; the power is F_01 . v_0.
 
     A spline is smooth only in pieces: its third derivative jumps at every point.
     """
+    if effect.spline is not None:
+        raise NotSmooth(
+            "spline: its path is given by points, with a different polynomial between each "
+            "two, and not by a law",
+            "give sinusoids, x= and y=",
+        )
 
-    def __init__(self, effect: Any, notation: Notation) -> None:
-        super().__init__(effect, notation)
-        if effect.spline is not None:
-            raise NotSmooth(
-                "spline: its path is given by points, with a different polynomial between each "
-                "two, and not by a law",
-                "give sinusoids, x= and y=",
-            )
-        self.path = self._axis("x", effect.x), self._axis("y", effect.y)
-
-    def _axis(self, axis: str, wave: Any) -> Expr:
+    def along(axis: str, wave: Any) -> Expr:
         if wave is None:
             return Integer(0)
         names = f"{axis.upper()}0", rf"\hat{{{axis}}}_{{A}}"
-        return self.sinusoid(wave, names, "m", axis, f"the pivot's motion along {axis}")
+        return sinusoid(s, wave, names, "m", axis, f"the pivot's motion along {axis}")
 
-    def statement(self) -> str:
-        """Return how the pivot moves."""
-        x, y = map(self.notation.latex, self.path)
-        return f"The pivot $A$ is moved by $\\left({x}, {y}\\right)$."
+    path = along("x", effect.x), along("y", effect.y)
 
-    def pivot(self) -> Vector:
-        """Return the position of the pivot, m."""
-        return self.path
-
-    def power(self, chain: Chain, ground_force: Vector) -> Expr:
-        """Return the power of what moves the pivot, W."""
+    def power(chain: Chain, ground_force: Vector) -> Expr:
         symbols = {law: symbol for symbol, law in chain.path.items()}
-        x, y = (law.diff(self.notation.t) for law in self.path)
+        x, y = (law.diff(s.t) for law in path)
         return dot(ground_force, (symbols.get(x, x), symbols.get(y, y)))
+
+    moved = ", ".join(map(s.latex, path))
+    statement = f"The pivot $A$ is moved by $\\left({moved}\\right)$."
+    return Law(effect, statement, pivot=path, power=power)

@@ -124,7 +124,7 @@ def _effects(page: Page) -> None:
         weight = page.along("j", equations.payload.mass * page.s.gravity)
         found.append(page.equation(page.vector("G", "p"), weight))
     for joint in equations.locked:
-        found.append(page.equation(page.chain.joint_acceleration(joint), Integer(0)))
+        found.append(page.equation(page.chain.joint(joint)[2], Integer(0)))
     page.step("Effects", " ".join(statements(page)), *found)
 
 
@@ -140,7 +140,7 @@ def statements(page: Page) -> list[str]:
         )
     if equations.torques:
         found.append("$\\tau_{j}$ is the sum of the couples of effects at joint $j$.")
-    return [*found, *(law.statement() for law in equations.laws)]
+    return [*found, *(law.statement for law in equations.laws)]
 
 
 def _points(

@@ -26,9 +26,9 @@ def equations_of_motion(page: Page) -> None:
         _put_in(page)
     law, locked = page.motion.law, page.motion.locking
     text = (
-        f"The reactions are put into the moment equations, and the terms with accelerations are "
-        f"collected on the left: ${law}$, with a symmetric matrix $M$, by $\\sin^{{2}} + "
-        "\\cos^{2} = 1$ and the formulas for the sine and cosine of a difference."
+        "The reactions are put into the moment equations, and the terms with accelerations are "
+        f"collected on the left: ${law}$, with a symmetric matrix $M$. $\\sin^{{2}} + \\cos^{{2}} = "
+        "1$ and the formulas for the sine and cosine of a difference make it short."
     )
     if locked:
         text += (
@@ -125,7 +125,7 @@ def solution(page: Page) -> None:
         accelerations = tuple(a.xreplace(inverse) for a in accelerations)
     if locked:
         write = page.s.latex
-        conditions = (f"${write(page.chain.joint_acceleration(j))} = 0$" for j in locked)
+        conditions = (f"${write(page.chain.joint(j)[2])} = 0$" for j in locked)
         couples = (f"${write(symbol)}$" for symbol in page.equations.holding.values())
         text += (
             f" The condition of each lock, {listed(conditions)}, is the equation that finds "
