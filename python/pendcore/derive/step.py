@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import groupby
 from textwrap import fill
-from typing import Any, NamedTuple
+from typing import Any
 
 from pendcore.derive import line_breaks
 from pendcore.derive.document import Block, Displayed, Heading, Paragraph, Reader, written
@@ -19,14 +19,15 @@ A_PAGE = 24
 """Rows that one equation may have before a page must be able to end in it."""
 
 
-class Formula(NamedTuple):
-    """One side of an equation that is no scalar expression, such as a sum of vectors."""
+class Formula(str):
+    """LaTeX of one side of an equation that is no scalar expression, such as a sum of vectors."""
 
-    text: str
-    latex: str
+    __slots__ = ()
 
-    def __str__(self) -> str:
-        return self.text
+    @property
+    def text(self) -> str:
+        """The same as text."""
+        return spoken(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,7 @@ class Equation:
 
     def side_latex(self, side: Any) -> str:
         """Return one side in LaTeX."""
-        return side.latex if isinstance(side, Formula) else self.notation.latex(side)
+        return str(side) if isinstance(side, Formula) else self.notation.latex(side)
 
     def latex(self) -> str:
         """Return both sides in LaTeX, without the number: ``lhs &= rhs``."""
@@ -160,24 +161,32 @@ def _wrapped(equation: str) -> str:
 
 
 _SPOKEN = (
-    (r"\\(?:left|right|math\w+|boldsymbol)\b ?|\\displaystyle", ""),
-    (r"\\[,;]", " "),
+    (r"\\(?:left|right|math\w+|boldsymbol|displaystyle)\b ?", ""),
+    (r"\\begin{vmatrix} ?(.*?) ?\\end{vmatrix}", r"det[\1]"),
+    (r" \\\\ ", "; "),
+    (r" & ", ", "),
+    (r"\\times", "x"),
+    (r" ?\\cdot ?", "*"),
+    (r" ?\\[,;]", " "),
     (r"\\var", r"\\"),
     (r"_{(\w+ ?[+-] ?\w+)}", r"_(\1)"),
-    (r"\\ddot{(\\?\w+)}", r"\1dd"),
-    (r"\\dot{(\\?\w+)}", r"\1d"),
-    (r"\\hat{(\w+)}", r"\1"),
-    (r"_{(\d+)}", r"\1"),
-    (r"\^{(\d+)}", r"^\1"),
+    (r"\\(d+)ot{(\\?\w+)}", r"\2\1"),
+    (r"_{(\d\w*)}", r"\1"),
+    (r"_{(\w),(\w+)}", r"\1_\2"),
     (r"\\frac{((?:[^{}]|{[^{}]*})*)}{((?:[^{}]|{[^{}]*})*)}", r"\1/\2"),
-    (r"[\\{}]", ""),
+    (r"\\hat|[\\{}]", ""),
+    (r" +", " "),
 )
+"""What stands for LaTeX's marks in text, in this order."""
+
+
+def spoken(latex: str) -> str:
+    """Return a formula as plain text: ``q1``, ``M qdd = f``, ``r_AB x F21``."""
+    for pattern, text in _SPOKEN:
+        latex = re.sub(pattern, text, latex)
+    return latex
 
 
 def plain(text: str) -> str:
-    """Return a text with its inline LaTeX written as plain text: ``q1``, ``M qdd = f``."""
-    parts = text.split("$")
-    for k in range(1, len(parts), 2):
-        for pattern, spoken in _SPOKEN:
-            parts[k] = re.sub(pattern, spoken, parts[k])
-    return "".join(parts)
+    """Return a text with its inline LaTeX written as plain text."""
+    return "".join(spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))

@@ -7,6 +7,7 @@ first, then terms link by link, accelerations before rates, and weights last.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -26,7 +27,7 @@ def latex(expression: Any, rank: Rank, names: dict[Symbol, str]) -> str:
         arranged(sympy.sympify(expression), rank, has_bars=True),
         order="none", symbol_names=names, fold_func_brackets=True, long_frac_ratio=16,
     )  # fmt: skip
-    return str(written)
+    return re.sub("^- ", "-", written)
 
 
 def text(expression: Any, rank: Rank) -> str:

@@ -29,7 +29,7 @@ def kinematics(page: Page) -> None:
         *_points(page, chain.joints[1:], joints[1:], 0),
         *(
             page.equation(
-                page.position(name),
+                page.vector("r", name),
                 total(page.along(unit, page.coordinate(axis, name)) for axis, unit in ("xi", "yj")),
             )
             for name in centers
@@ -80,10 +80,8 @@ def _mobility(page: Page) -> None:
         "Degrees of freedom",
         f"Of the chain $n = {k}$ counts the moving links, $c_{{5}} = {k}$ the joints that leave one "
         f"degree of freedom, and $c_{{4}} = 0$ those that leave two.{locks} The generalized coordinates are the angles of the links: {angles}.",
-        page.equation(symbol, Formula("3 n - 2 c5 - c4", r"3 n - 2 c_{5} - c_{4}")),
-        page.equation(
-            symbol, Formula(f"3*{k} - 2*{k} - 0 = {k}", rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")
-        ),
+        page.equation(symbol, Formula("3 n - 2 c_{5} - c_{4}")),
+        page.equation(symbol, Formula(rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")),
     )
 
 

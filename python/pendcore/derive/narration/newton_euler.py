@@ -40,7 +40,7 @@ def _euler(page: Page, i: int, about: Formula, number: str | None = None) -> Equ
     begin, end, center = page.joint(i - 1), page.joint(i), page.center(i)
     near, far = _forces(page, i)
     acting = [
-        page.cross(page.position(at, about), force)
+        page.moment(about + at, force)
         for at, force in ((center, page.vector("G", i)), (begin, near), (end, far))
         if at != about and force is not None
     ]
@@ -48,7 +48,7 @@ def _euler(page: Page, i: int, about: Formula, number: str | None = None) -> Equ
         if load.link == i:
             acting.append(page.along("k", load.moment))
             if about != begin:
-                acting.append(page.cross(page.position(begin, about), page.load(load)))
+                acting.append(page.moment(about + begin, page.load(load)))
     couples = page.equations.couples(i)
     if couples != 0:
         acting.append(page.along("k", couples))
@@ -74,7 +74,7 @@ def _far_in_words(page: Page, i: int) -> str:
     if far is None:
         return ""
     whose = f"link {i + 1}" if i < page.n else "the payload"
-    text = f" ${far.latex}$ is the force of {whose} on link {i} at ${page.joint(i).latex}$."
+    text = f" ${far}$ is the force of {whose} on link {i} at ${page.joint(i)}$."
     if i == page.n and payload is not None and payload.inertia != 0:
         couple = page.s.latex(expand(payload.inertia * page.s.qdd[i - 1]))
         text += (
@@ -132,7 +132,7 @@ def _other(page: Page, i: int, link: LinkEquations) -> None:
     page.step(
         f"Newton-Euler equations of link {i}",
         "Mass times acceleration is the sum of the forces, and moment of inertia times angular "
-        f"acceleration is the sum of the moments about ${center.latex}$.{joint}"
+        f"acceleration is the sum of the moments about ${center}$.{joint}"
         f"{_far_in_words(page, i) if i in (1, page.n) else ''}",
         _newton(page, i, "2.3" if own else None),
         _euler(page, i, center, "2.4" if own else None),
@@ -159,18 +159,17 @@ def _payload(page: Page, payload: PayloadEquations) -> None:
     mass, turning, moment = payload.mass, "", list[Equation]()
     if payload.inertia != 0:
         turning = (
-            f" The couple ${couple.latex}$ of link {page.n} turns the payload: the forces on it "
+            f" The couple ${couple}$ of link {page.n} turns the payload: the forces on it "
             "have no moment about its mass centre."
         )
         alpha = page.vector("alpha", page.n)
         moment = [page.equation(page.scaled(payload.inertia, alpha), couple)]
-    opposite = Formula(f"-{force.text}", f"-{force.latex}")
     page.step(
         "Newton-Euler equations of the payload" if moment else "Newton's equations of the payload",
-        f"The opposite of ${force.latex}$ acts on the payload, whose mass centre is at "
-        f"${tip.latex}$.{turning}",
+        f"The opposite of ${force}$ acts on the payload, whose mass centre is at "
+        f"${tip}$.{turning}",
         page.equation(
-            page.scaled(mass, page.vector("a", tip)), total([opposite, page.vector("G", "p")])
+            page.scaled(mass, page.vector("a", tip)), total([Formula(f"-{force}"), page.vector("G", "p")])
         ),
         *(
             page.equation(mass * page.coordinate(axis, tip, 2), line.acting)

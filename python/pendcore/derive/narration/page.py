@@ -77,20 +77,18 @@ class Page:
 
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
-        if self.n <= 2 or joint == 0:
-            return Formula(*["ABD"[joint]] * 2)
-        return Formula(f"P{joint}", f"P_{{{joint}}}")
+        return Formula("ABD"[joint] if self.n <= 2 or joint == 0 else f"P_{{{joint}}}")
 
     @staticmethod
     def center(link: int) -> Formula:
         """Return the name of a mass centre."""
-        return Formula(f"C{link}", f"C_{{{link}}}")
+        return Formula(f"C_{{{link}}}")
 
     def coordinate(self, axis: str, point: Formula, dots: int = 0) -> Symbol:
         """Return x_C1, or with dots its velocity and acceleration."""
         (mark, shown), rank = [*DOTTED.items()][dots], (ANGLE, RATE, ACCELERATION)[dots]
         name = f"{axis}{mark}_{point.text}"
-        return self.symbol(name, f"{shown.format(axis)}_{{{point.latex}}}", rank)
+        return self.symbol(name, f"{shown.format(axis)}_{{{point}}}", rank)
 
     def moment_of_inertia(self, link: int) -> Symbol:
         """Return I_C1; for link 0 I_A, that of link 1 about the pivot."""
@@ -99,59 +97,43 @@ class Page:
         return self.symbol(f"I_C{link}", f"I_{{C_{{{link}}}}}", MASS, link)
 
     @staticmethod
-    def position(of: Formula, origin: Formula | None = None) -> Formula:
-        """Return a vector between points, such as r_C1, or r_C1B from C1 to B."""
-        before = origin or Formula("", "")
-        return Formula(f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}")
-
-    @staticmethod
-    def vector(letter: str, index: Formula | str | int) -> Formula:
-        """Return a vector: a_C1, alpha_1, G_1, F_12."""
+    def vector(letter: str, index: object) -> Formula:
+        """Return a vector: a_C1, alpha_1, G_1, F_12; r_C1B from C1 to B."""
         bold = rf"\boldsymbol{{\{letter}}}" if len(letter) > 1 else rf"\mathbf{{{letter}}}"
-        if isinstance(index, Formula):
-            return Formula(f"{letter}_{index.text}", f"{bold}_{{{index.latex}}}")
-        return Formula(f"{letter}{index}", f"{bold}_{{{index}}}")
+        return Formula(f"{bold}_{{{index}}}")
 
     def load(self, load: LinkLoad) -> Formula:
         """Return the name of a force on a link, D_2; a second force there gets another name."""
-        vector = self.vector("D", load.link)
         count = 1 + [x for x in self.equations.loads if x.link == load.link].index(load)
-        if count == 1:
-            return vector
-        return Formula(f"{vector.text}_{count}", f"{vector.latex}^{{({count})}}")
+        mark = f"^{{({count})}}" if count > 1 else ""
+        return Formula(self.vector("D", load.link) + mark)
 
     def along(self, unit: str, value: Any) -> Formula:
         """Return a value along a unit vector: ``m1*g j``."""
-        return self.scaled(value, Formula(unit, rf"\, \mathbf{{{unit}}}"))
+        return self.scaled(value, Formula(rf"\, \mathbf{{{unit}}}"))
 
     def scaled(self, factor: Any, vector: Formula) -> Formula:
         """Return a vector times a factor: ``m1 a_C1``."""
-        text, latex = self.s.text(factor), self.s.latex(factor)
+        latex = self.s.latex(factor)
         if getattr(factor, "is_Add", False):
-            text, latex = f"({text})", rf"\left({latex}\right)"
-        return Formula(f"{text} {vector.text}", f"{latex} {vector.latex}")
+            latex = rf"\left({latex}\right)"
+        return Formula(f"{latex} {vector}")
 
-    @staticmethod
-    def cross(arm: Formula, force: Formula) -> Formula:
-        """Return a moment: arm x force."""
-        return Formula(f"{arm.text} x {force.text}", rf"{arm.latex} \times {force.latex}")
+    def moment(self, arm: str, force: Formula) -> Formula:
+        """Return a moment: arm x force; the arm is named by the points between which it is."""
+        return Formula(rf"{self.vector('r', arm)} \times {force}")
 
     def determinant(self, arm: tuple[Expr, Expr], force: tuple[Expr, Expr]) -> Formula:
         """Return the cross product of two vectors in the plane, as the textbook prints it."""
-        text = "; ".join(", ".join([*map(self.s.text, row), "0"]) for row in (arm, force))
-        rows = [[r"\mathbf{i}", r"\mathbf{j}", r"\mathbf{k}"]]
+        rows = [[rf"\mathbf{{{unit}}}" for unit in "ijk"]]
         rows += [[*map(self.s.latex, row), "0"] for row in (arm, force)]
         latex = r" \\ ".join(" & ".join(row) for row in rows)
-        return Formula(f"det[i, j, k; {text}]", rf"\begin{{vmatrix}} {latex} \end{{vmatrix}}")
+        return Formula(rf"\begin{{vmatrix}} {latex} \end{{vmatrix}}")
 
 
 def total(terms: Iterable[Formula]) -> Formula:
     """Return a sum; a term that begins with a minus is subtracted."""
-    texts, latex = (
-        " + ".join(sides).replace("+ -", "- ").replace("-  ", "- ")
-        for sides in zip(*terms, strict=True)
-    )
-    return Formula(texts, latex)
+    return Formula(" + ".join(terms).replace("+ -", "- "))
 
 
 def listed(words: Iterable[str]) -> str:

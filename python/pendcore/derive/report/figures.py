@@ -11,7 +11,7 @@ import numpy as np
 from pendcore.derive.document import Drawing
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import drawing
-from pendcore.derive.report.free_bodies import Acting, Reaction, free_bodies
+from pendcore.derive.report.free_bodies import free_bodies
 from pendcore.derive.report.mechanism import mechanism
 from pendcore.derive.report.quantities import number
 
@@ -44,7 +44,7 @@ class Figures:
         self.scene = derivation.scene
         self.q = list(q)
         self._page = page = Page(derivation)
-        self.points = [page.joint(i).latex for i in range(derivation.n + 1)]
+        self.points = [page.joint(i) for i in range(derivation.n + 1)]
         self._count = 0
 
     def _drawing(self, name: str, caption: str, figure: Figure) -> Drawing:
@@ -60,42 +60,18 @@ class Figures:
 
     def free_bodies(self, *, forces: bool = True) -> Drawing:
         """Draw every link alone; without forces the drawing is for those who are to draw them."""
-        equations, write = self.derivation.equations, self.derivation.symbols.latex
-        reactions = [
-            Reaction(write(x), write(y), k == 0) for k, (x, y) in enumerate(equations.forces)
-        ]
-        if equations.payload is not None:
-            x, y = equations.payload.force
-            reactions.append(Reaction(write(x), write(y), False))
         with drawing.lettering():
-            figure = free_bodies(
-                self.scene, self.q, self.points, reactions if forces else [], self._acting()
-            )
+            figure = free_bodies(self._page, self.q, forces=forces)
         if not forces:
             words = "The links, to be completed into free-body diagrams."
             return self._drawing("links", words, figure)
         words = "The links as free bodies; the arrows show what counts as positive."
-        if equations.loads:
+        if self.derivation.equations.loads:
             words += (
                 " The drag $D_{i}$ on rod $i$ is drawn as it is for positive $F_{d,i}$; "
                 "its moment about the joint where the rod begins is $T_{d,i}$."
             )
         return self._drawing("free_bodies", words, figure)
-
-    def _acting(self) -> Acting:
-        """What acts on the free bodies besides weights and joint forces."""
-        equations, write = self.derivation.equations, self.derivation.symbols.latex
-        joints = range(1, self.derivation.n + 1)
-        couples = {j: write(c) for j in joints if (c := equations.joint_couple(j)) != 0}
-        loads = tuple((load.link, self._page.load(load).latex) for load in equations.loads)
-        if (payload := equations.payload) is None:
-            return Acting(couples, loads)
-        turning = payload.inertia * self.derivation.symbols.qdd[-1]
-        mass = write(payload.mass)
-        return Acting(
-            couples, loads, rf"({mass})" if payload.mass.is_Add else mass,
-            write(turning) if turning != 0 else "",
-        )  # fmt: skip
 
     def angles(self, solution: Solution) -> Drawing:
         """Draw the textbook's figure, the angles over time."""
