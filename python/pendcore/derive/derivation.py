@@ -6,13 +6,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sympy import Expr, Integer, Matrix, Symbol
+from sympy import Expr, Integer, Symbol
 
 from pendcore import Case, Scene
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.energy import Energy
 from pendcore.derive.laws import laws_of
-from pendcore.derive.motion import Assignments, Motion
+from pendcore.derive.motion import Motion
 from pendcore.derive.newton_euler import NewtonEuler
 from pendcore.derive.notation import Notation
 
@@ -24,7 +24,7 @@ WRITTEN_OUT = (5, 137, 1207, 10190, 90219)
 """Operations of the accelerations of 1, 2, ... uniform rods, written out; a test counts them."""
 
 
-class Derivation:
+class Derivation(Motion):
     """The equations of motion of a scene, derived in symbols.
 
     Parameters
@@ -50,14 +50,12 @@ class Derivation:
         Kinematics.
     equations : NewtonEuler
         Newton's and Euler's equations, with the reactions as unknowns.
-    motion : Motion
-        The equations that are left when the reactions are eliminated, and their solution.
     energy : Energy
         Energies, powers, and their balance.
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.n = n = len(scene.links)
+        n = len(scene.links)
         if n > len(WRITTEN_OUT):
             counts = ", ".join(f"{count:_}".replace("_", " ") for count in WRITTEN_OUT)
             most = len(WRITTEN_OUT)
@@ -68,14 +66,13 @@ class Derivation:
                 "recursion that never writes them out"
             )
         self.scene = scene
-        self.symbols = Notation(scene)
-        laws = laws_of(scene.effects, self.symbols)
+        symbols = Notation(scene)
+        laws = laws_of(scene.effects, symbols)
         moved = [law.pivot for law in laws if law.pivot is not None]
         x, y = (sum((pivot[k] for pivot in moved), Integer(0)) for k in (0, 1))
-        self.chain = Chain(self.symbols, (x, y))
-        self.equations = NewtonEuler(self.chain, laws)
-        self.motion = Motion(self.equations)
-        self.energy = Energy(self.motion)
+        self.chain = Chain(symbols, (x, y))
+        super().__init__(NewtonEuler(self.chain, laws))
+        self.energy = Energy(self)
 
     @classmethod
     def textbook(cls) -> Derivation:
@@ -87,55 +84,26 @@ class Derivation:
         """The numbers of the scene, SI units."""
         return self.symbols.values
 
-    @property
-    def mass_matrix(self) -> Matrix:
-        """M of ``M qdd = forcing``, (n, n), kg m^2."""
-        return self.motion.mass_matrix
-
-    @property
-    def forcing(self) -> Matrix:
-        """The right side of ``M qdd = forcing``, (n, 1), N m, in t, q, qd and parameters."""
-        return self.motion.forcing
-
-    @property
-    def accelerations(self) -> tuple[Expr, ...]:
-        """Angular accelerations written out, in t, q, qd and parameters, (n,), rad/s^2."""
-        return self.motion.accelerations
-
-    @property
-    def shared(self) -> Assignments:
-        """Assignments that lead to the accelerations, each in terms of those before it.
-
-        `shared_accelerations` are written with the symbols that they assign.
-        """
-        return self.motion.shared
-
-    @property
-    def shared_accelerations(self) -> tuple[Expr, ...]:
-        """The accelerations in terms of `shared`, (n,), rad/s^2."""
-        return self.motion.shared_accelerations
-
     @cached_property
     def reactions(self) -> tuple[Vector, ...]:
         """Force on each link where it begins, (n,) pairs, N, in t, q, qd, qdd: F_01, F_12, ..."""
-        known = self.motion.definitions
+        known = self.definitions
         return tuple((x.xreplace(known), y.xreplace(known)) for x, y in self.equations.reactions)
 
     @cached_property
     def holding_couples(self) -> dict[int, Expr]:
         """Couple of each locked joint on the link beyond it, N m, in t, q, qd, qdd."""
-        known = self.motion.known
-        return {joint: couple.xreplace(known) for joint, couple in self.motion.holding.items()}
+        return {joint: couple.xreplace(self.known) for joint, couple in self.holding.items()}
 
     @property
     def kinetic_energy(self) -> Expr:
         """T, J, in t, q, qd and parameters."""
-        return self.energy.kinetic.xreplace(self.motion.definitions)
+        return self.energy.kinetic.xreplace(self.definitions)
 
     @property
     def potential_energy(self) -> Expr:
         """V, of weights and springs, J, in t, q and parameters; zero at the origin's height."""
-        return self.energy.potential.xreplace(self.motion.definitions)
+        return self.energy.potential.xreplace(self.definitions)
 
     @property
     def powers(self) -> dict[Any, Expr]:

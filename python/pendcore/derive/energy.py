@@ -17,19 +17,13 @@ from pendcore.derive.motion import Motion
 
 
 class Energy:
-    """Kinetic and potential energy of a chain, J, and the powers that effects bring into it, W.
-
-    Parameters
-    ----------
-    motion : Motion
-        The equations of motion, solved.
-    """
+    """Kinetic and potential energy of a chain, J, and the powers that effects bring into it, W."""
 
     def __init__(self, motion: Motion) -> None:
         self.motion = motion
         self.equations = motion.equations
         self.chain = motion.equations.chain
-        self.notation = s = motion.notation
+        self.symbols = s = motion.symbols
         bodies = [*zip(s.masses, s.inertias, s.qd, strict=True)]
         places, velocities = [*self.chain.centers], [*self.chain.center_velocities]
         if (payload := self.equations.payload) is not None:
@@ -51,7 +45,7 @@ class Energy:
     @cached_property
     def potential(self) -> Expr:
         """The potential energy of weights and springs, J; zero at the height of the origin."""
-        found = expand(-self.notation.gravity * sum(m * y for (m, *_), (_, y), _ in self._bodies))
+        found = expand(-self.symbols.gravity * sum(m * y for (m, *_), (_, y), _ in self._bodies))
         for law in self.equations.laws:
             if law.stored is not None:
                 found += law.stored(self.chain.joint(law.effect.joint)[0])
@@ -91,7 +85,7 @@ class Energy:
         The second step adds qd . e at the solved accelerations: that is 0 if they solve the
         equations.
         """
-        s, motion = self.notation, self.motion
+        s, motion = self.symbols, self.motion
         torques = {d.symbol: d.value for d in self.equations.torques.values()}
         residual = self.chain.rate(self.kinetic + self.potential)
         residual -= sum(self.powers_by_definitions.values(), Integer(0))

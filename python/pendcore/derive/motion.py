@@ -18,7 +18,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import sympy
-from sympy import Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
+from sympy import Add, Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
 
 from pendcore.derive.chain import of_differences
 from pendcore.derive.newton_euler import NewtonEuler
@@ -28,15 +28,7 @@ Assignments = tuple[tuple[Symbol, Expr], ...]
 
 
 class Named(NamedTuple):
-    """M and f with a symbol for each entry that is not 0.
-
-    Attributes
-    ----------
-    entries : dict
-        What the symbols stand for, with torques and loads as symbols.
-    matrix, right : sympy.Matrix, (n, n), (n, 1)
-        M and f in terms of them.
-    """
+    """M and f with a symbol for each entry that is not 0, and what the symbols stand for."""
 
     entries: dict[Symbol, Expr]
     matrix: Matrix
@@ -44,24 +36,18 @@ class Named(NamedTuple):
 
 
 class Motion:
-    """Mass matrix, forcing and accelerations of a chain.
-
-    Parameters
-    ----------
-    equations : NewtonEuler
-        Newton's and Euler's equations.
-    """
+    """Mass matrix, forcing and accelerations of a chain, from Newton's and Euler's equations."""
 
     def __init__(self, equations: NewtonEuler) -> None:
         self.equations = equations
-        self.notation = equations.notation
+        self.symbols = equations.notation
         self.n = equations.n
 
     @cached_property
     def mass_matrix(self) -> Matrix:
-        """M, (n, n), kg m^2, of the chain with all its joints free, even if some are locked."""
+        """M of ``M qdd = forcing``, (n, n), kg m^2, with all joints free, even if some are locked."""
         rows = [
-            [of_differences((line.inertia - line.acting).diff(a)) for a in self.notation.qdd]
+            [of_differences((line.inertia - line.acting).diff(a)) for a in self.symbols.qdd]
             for line in self.equations.without_reactions
         ]
         return ImmutableMatrix(rows)
@@ -69,7 +55,7 @@ class Motion:
     @cached_property
     def forcing_by_definitions(self) -> Matrix:
         """f, (n, 1), N m, with torques and loads as symbols, without the couples of locks."""
-        at_rest = dict.fromkeys([*self.notation.qdd, *self.equations.holding.values()], Integer(0))
+        at_rest = dict.fromkeys([*self.symbols.qdd, *self.equations.holding.values()], Integer(0))
         return ImmutableMatrix([
             of_differences((line.acting - line.inertia).subs(at_rest))
             for line in self.equations.without_reactions
@@ -85,7 +71,7 @@ class Motion:
 
     @cached_property
     def forcing(self) -> Matrix:
-        """f, (n, 1), N m, in t, q, qd and parameters."""
+        """The right side of ``M qdd = forcing``, (n, 1), N m, in t, q, qd and parameters."""
         return self.forcing_by_definitions.xreplace(self.definitions)
 
     @cached_property
@@ -96,7 +82,7 @@ class Motion:
 
         def keep(letter: str, index: str, value: Expr) -> Expr:
             if value != 0:
-                name = self.notation.symbol(f"{letter}{index}", f"{letter}_{{{index}}}")
+                name = self.symbols.symbol(f"{letter}{index}", f"{letter}_{{{index}}}")
                 entries[name], value = value, name
             return value
 
@@ -116,12 +102,12 @@ class Motion:
     @cached_property
     def locking(self) -> dict[Symbol, Expr]:
         """The couple of locks on each link, if any: lambda_i = Lambda_i - Lambda_(i+1), N m."""
-        couples, found = self.equations.holding, dict[Symbol, Expr]()
-        for i in range(1, self.n + 1):
-            value = couples.get(i, Integer(0)) - couples.get(i + 1, Integer(0))
-            if value != 0:
-                found[self.notation.symbol(f"lambda{i}", rf"\lambda_{{{i}}}")] = value
-        return found
+        couples, symbol = self.equations.holding, self.symbols.symbol
+        return {
+            symbol(f"lambda{i}", rf"\lambda_{{{i}}}"): couples.get(i, 0) - couples.get(i + 1, 0)
+            for i in range(1, self.n + 1)
+            if i in couples or i + 1 in couples
+        }
 
     @property
     def law(self) -> str:
@@ -146,9 +132,8 @@ class Motion:
     def _free(self) -> tuple[Matrix, Matrix]:
         """B^T M B and B^T f."""
         _, matrix, right = self.named
-        return self.turning_together.T * matrix * self.turning_together, (
-            self.turning_together.T * right
-        )
+        together = self.turning_together
+        return together.T * matrix * together, together.T * right
 
     @cached_property
     def determinant(self) -> Expr:
@@ -168,7 +153,7 @@ class Motion:
 
     @cached_property
     def accelerations(self) -> tuple[Expr, ...]:
-        """The solution written out, in t, q, qd and parameters, rad/s^2."""
+        """Angular accelerations written out, in t, q, qd and parameters, (n,), rad/s^2."""
         return tuple([expression.xreplace(self.known) for expression in self.by_entries])
 
     @cached_property
@@ -177,7 +162,7 @@ class Motion:
 
         It is what M qdd - f leaves over, in the symbols of `named` and the accelerations.
         """
-        left = self.named.matrix * Matrix(self.notation.qdd) - self.named.right
+        left = self.named.matrix * Matrix(self.symbols.qdd) - self.named.right
         found: dict[int, Expr] = {}
         for joint in reversed(self.equations.locked):
             found[joint] = left[joint - 1] + found.get(joint + 1, Integer(0))
@@ -190,22 +175,22 @@ class Motion:
         first = [[*together[:, k]].index(1) for k in range(matrix.rows)]
         free = Matrix(len(first), 1, [self.by_entries[i] for i in first])
         error = (matrix * free - right).applyfunc(sympy.cancel)
-        return sum((self.notation.qd[i] * e for i, e in zip(first, error, strict=True)), Integer(0))
+        return sum((self.symbols.qd[i] * e for i, e in zip(first, error, strict=True)), Integer(0))
 
     @property
     def shared(self) -> Assignments:
-        """Assignments that lead to the accelerations: laws, entries of M and f, elimination."""
+        """Assignments that lead to `shared_accelerations`: laws, entries of M and f, elimination."""
         return self._elimination[0]
 
     @property
     def by_elimination(self) -> Assignments:
         """The part of `shared` that eliminates: D, L, h and a, in the symbols of `named`."""
-        return tuple((symbol, x) for symbol, x in self.shared
-                     if symbol not in self.definitions.keys() | self.named.entries.keys())  # fmt: skip
+        known = self.definitions.keys() | self.named.entries.keys()
+        return tuple((symbol, x) for symbol, x in self.shared if symbol not in known)
 
     @property
     def shared_accelerations(self) -> tuple[Expr, ...]:
-        """The accelerations in terms of the symbols of `shared`, rad/s^2."""
+        """The accelerations in terms of the symbols of `shared`, (n,), rad/s^2."""
         return self._elimination[1]
 
     @cached_property
@@ -219,7 +204,7 @@ class Motion:
             if value.is_Atom:
                 return value
             latex = rf"\ell_{{{index}}}" if letter == "l" else f"{letter}_{{{index}}}"
-            done.append((self.notation.symbol(f"{letter}{index}", latex), value))
+            done.append((self.symbols.symbol(f"{letter}{index}", latex), value))
             return done[-1][0]
 
         size = matrix.rows
@@ -227,17 +212,18 @@ class Motion:
         pivots: list[Expr] = []
         reduced: list[Expr] = []
         for j in range(size):
-            known = sum((lower[j, k] ** 2 * pivots[k] for k in range(j)), Integer(0))
-            pivots.append(keep("D", f"{j + 1}", matrix[j, j] - known))
-            known = sum((lower[j, k] * reduced[k] for k in range(j)), Integer(0))
-            reduced.append(keep("h", f"{j + 1}", right[j] - known))
+            before = range(j)
+            pivot = matrix[j, j] - Add(*(lower[j, k] ** 2 * pivots[k] for k in before))
+            pivots.append(keep("D", f"{j + 1}", pivot))
+            rest = right[j] - Add(*(lower[j, k] * reduced[k] for k in before))
+            reduced.append(keep("h", f"{j + 1}", rest))
             for i in range(j + 1, size):
-                known = sum((lower[i, k] * lower[j, k] * pivots[k] for k in range(j)), Integer(0))
-                lower[i, j] = keep("l", f"{i + 1}{j + 1}", (matrix[i, j] - known) / pivots[j])
+                rest = matrix[i, j] - Add(*(lower[i, k] * lower[j, k] * pivots[k] for k in before))
+                lower[i, j] = keep("l", f"{i + 1}{j + 1}", rest / pivots[j])
         free = [Integer(0)] * size
         for i in reversed(range(size)):
-            known = sum((lower[k, i] * free[k] for k in range(i + 1, size)), Integer(0))
-            value = reduced[i] / pivots[i] - known
+            rest = Add(*(lower[k, i] * free[k] for k in range(i + 1, size)))
+            value = reduced[i] / pivots[i] - rest
             free[i] = keep("a", f"{i + 1}", value) if i > 0 else value
         solved = tuple(self.turning_together * ImmutableMatrix(size, 1, free))
         return needed(done, solved), solved

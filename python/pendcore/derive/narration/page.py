@@ -53,7 +53,6 @@ class Page:
         self.s = derivation.symbols
         self.chain = derivation.chain
         self.equations = derivation.equations
-        self.motion = derivation.motion
         scene = derivation.scene
         links = [link.particulars().keys() for link in scene.links]
         self.is_uniform = all(given <= {"mass", "length"} for given in links)

@@ -24,7 +24,7 @@ def equations_of_motion(page: Page) -> None:
     )
     if page.n == 2:
         _put_in(page)
-    law, locked = page.motion.law, page.motion.locking
+    law, locked = page.derivation.law, page.derivation.locking
     text = (
         "The reactions are put into the moment equations, and the terms with accelerations are "
         f"collected on the left: ${law}$, with a symmetric matrix $M$. $\\sin^{{2}} + \\cos^{{2}} = "
@@ -39,7 +39,7 @@ def equations_of_motion(page: Page) -> None:
     page.step(
         "Equations of motion, collected" if page.n == 2 else "Equations of motion",
         text,
-        *(page.equation(*named) for named in (page.motion.named.entries | locked).items()),
+        *(page.equation(*named) for named in (page.derivation.named.entries | locked).items()),
     )
 
 
@@ -98,7 +98,7 @@ def _put_in(page: Page) -> None:
 
 def solution(page: Page) -> None:
     """Write the accelerations, and the couples of locks."""
-    motion, locked = page.motion, page.equations.locked
+    motion, locked = page.derivation, page.equations.locked
     text = "The equations of motion are linear in the accelerations."
     accelerations, found = motion.by_entries, list[Equation]()
     if locked:

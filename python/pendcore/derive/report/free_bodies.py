@@ -93,11 +93,8 @@ def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sket
 
 def _payload(axes: Axes, page: Page, *, forces: bool) -> Sketch:
     """Draw the body at the tip, with its weight and what the last link does to it."""
-    from matplotlib.patches import Circle
-
     payload, on, at = page.equations.payload, drawing.sketch(axes, 1.0), np.zeros(2)
-    axes.add_patch(Circle((0.0, 0.0), 0.09, facecolor=drawing.STEEL, ec=drawing.BLACK, zorder=3))
-    on.drawn.append((at[None], 0.09))
+    on.disc(at, 0.09, facecolor=drawing.STEEL, zorder=3)
     drawing.mass_center(on, at)
     name(on, 0.09 * direction(-np.pi / 4), f"${page.joint(page.n)}$", direction(-np.pi / 4))
     for side in np.eye(2):  # as large as a link is drawn

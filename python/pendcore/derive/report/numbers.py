@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
     """Yield M and f with the numbers of the scene, and the laws in which they are written."""
-    motion, write = derivation.motion, derivation.symbols.latex
+    write = derivation.symbols.latex
     law = r"\mathbf{M}(q)\,\ddot{\mathbf{q}} = \mathbf{f}"
-    law += r" + \boldsymbol{\lambda}" if motion.locking else ""
+    law += r" + \boldsymbol{\lambda}" if derivation.locking else ""
     yield Heading(3, "The equations of motion with numbers")
     yield Paragraph(
         r"With the numbers of the table, angles in rad, rates in rad/s and $t$ in s, the equations "
@@ -33,8 +33,8 @@ def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
     )
     defined = derivation.equations.definitions
     units = {known.symbol: known.meaning.rpartition(", ")[2] for known in defined}
-    laws = needed([(d.symbol, d.value) for d in defined], motion.named.entries.values())
-    for block in (laws, motion.named.entries.items()):
+    laws = needed([(d.symbol, d.value) for d in defined], derivation.named.entries.values())
+    for block in (laws, derivation.named.entries.items()):
         lines = [
             row
             for symbol, value in block
@@ -42,8 +42,8 @@ def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
         ]
         if lines:
             yield Displayed(aligned(lines))
-    if motion.locking:
-        told = ", ".join(f"${write(x)} = {write(value)}$" for x, value in motion.locking.items())
+    if derivation.locking:
+        told = ", ".join(f"${write(x)} = {write(value)}$" for x, value in derivation.locking.items())
         yield Paragraph(
             f"and {told}: the couples of locks are unknown, and found together with the "
             "accelerations, from the condition that a locked joint does not turn."
@@ -142,7 +142,7 @@ def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
         f"{', '.join(f'${write(x)} = {quantity(value, of)}$' for x, value, of in state)}, "
         "the entries of $\\mathbf{M}$ and $\\mathbf{f}$ are"
     )
-    entries = {x: start.value(value) for x, value in derivation.motion.known.items()}
+    entries = {x: start.value(value) for x, value in derivation.known.items()}
     measures = [("N m", value) for x, value in entries.items() if _unit(x) == "N m"]
     scales = Scales(derivation, [*measures, *((u, x) for _, u, *both in table for x in both)])
     yield Displayed(aligned([
