@@ -130,7 +130,7 @@ def test_the_energy_changes_by_the_powers_exactly(name: str, n: int) -> None:
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_the_energy_s_rate_is_found_the_long_way_too(n: int) -> None:
     derivation = derived("all", n)
-    s, known = derivation.symbols, derivation.motion.definitions
+    s, known = derivation.symbols, derivation.definitions
     pivot = derivation.chain.path
     total = derivation.kinetic_energy + derivation.potential_energy
     rate = total.diff(s.t) + sum(

@@ -51,7 +51,7 @@ def arranged(expression: Expr, rank: Rank, *, has_bars: bool = False) -> Expr:
         return part
 
     def product(part: Expr) -> Expr:
-        number, factors = part.as_coeff_mul()
+        number, factors = part.as_coeff_mul(rational=False)
         factors = sorted(factors, key=lambda factor: _place_in_product(factor, rank))
         lead = [x for x in factors if _place_in_product(x, rank)[0] <= LENGTH]
         over = any(x.is_Pow and x.exp.could_extract_minus_sign() for x in factors)

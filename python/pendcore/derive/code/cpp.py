@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from sympy import Expr, cos, cxxcode, sin
+from sympy.printing.cxx import CXX17CodePrinter
 
 from pendcore.derive.code.computation import Computation, computations, powers_by_name
 from pendcore.derive.code.layout import (
@@ -20,24 +22,7 @@ from pendcore.derive.code.layout import (
 if TYPE_CHECKING:
     from pendcore.derive.derivation import Derivation
 
-TAKEN = (
-    *("links", "t", "y", "dydt", "q", "qd", "qdd", "force", "energy", "power", "square", "cube"),
-    *("right_hand_side", "accelerations", "reactions", "powers", "total", "std"),
-    *("Angles", "State", "Force", "Energy", "Powers", "x", "kinetic", "potential"),
-)
-"""Names that the header uses for itself."""
-
-KEYWORDS = {
-    *("alignas", "alignof", "and", "asm", "auto", "bitand", "bitor", "bool", "break", "case"),
-    *("catch", "char", "class", "compl", "const", "constexpr", "continue", "decltype", "default"),
-    *("delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false", "float"),
-    *("for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new"),
-    *("noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public"),
-    *("register", "return", "short", "signed", "sizeof", "static", "struct", "switch"),
-    *("template", "this", "throw", "true", "try", "typedef", "typeid", "typename", "union"),
-    *("unsigned", "using", "virtual", "void", "volatile", "while", "xor"),
-}
-"""Keywords of C++ that Python allows as names."""
+KEYWORDS = {*CXX17CodePrinter.reserved_words, "catch", "register"}  # SymPy forgets these two
 
 HEADER = """\
 /// \\file
@@ -132,6 +117,9 @@ FUNCTIONS = {
     "energy": ("Energy", "Kinetic and potential energy of the chain."),
     "powers": ("Powers", "Power of each effect."),
 }
+TAKEN = {*re.findall(r"[A-Za-z]\w*", re.sub(r"//.*", "", HEADER + POWERS)), *FUNCTIONS}
+"""Names that the header uses for itself."""
+
 PRINTED_AS = {"Pow": [
     (lambda base, exponent: exponent == 2, lambda base, exponent: f"square({base})"),
     (lambda base, exponent: exponent == 3, lambda base, exponent: f"cube({base})"),

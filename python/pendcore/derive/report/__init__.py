@@ -27,17 +27,7 @@ if TYPE_CHECKING:
 
 
 class Report(NamedTuple):
-    """The result of writing a report.
-
-    Attributes
-    ----------
-    files : list of Path
-        The files that were written.
-    complaint : str
-        A complaint about the run that the report shows; empty if there is none.
-    left_out : list of Path
-        The files that could not be written; a warning says why.
-    """
+    """The files that were written, a complaint about the run, and the files that could not be."""
 
     files: list[Path]
     complaint: str
@@ -54,24 +44,8 @@ def write_report(
 ) -> Report:
     """Write the report of a case, and its worksheet, in every form that this machine can make.
 
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of the case's scene.
-    case : Case
-        The case that is derived and solved.
-    folder : Path
-        Where to write; the folder has to exist.
-    with_worksheet : bool
-        Whether to write ``worksheet`` beside ``report``.
-    progress : None, bool or callable
-        As in `pendcore.simulate`.
-
-    Returns
-    -------
-    Report
-        The files, the report first: Markdown always, HTML where there is pandoc, PDF where there is
-        a LaTeX engine too; then the figures. Also the complaint about the run.
+    The parameters are those of `Derivation.report`, but the folder has to exist. The report is the
+    first file: Markdown always, HTML where there is pandoc, PDF where there is a LaTeX engine too.
     """
     told = bars.callback(progress, "deriving") or (lambda fraction: None)
     try:

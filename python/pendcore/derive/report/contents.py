@@ -11,16 +11,8 @@ from sympy import Expr
 
 import pendcore
 from pendcore.derive import line_breaks, narration
-from pendcore.derive.document import (
-    Blank,
-    Block,
-    Displayed,
-    Document,
-    Heading,
-    Paragraph,
-    Space,
-    Table,
-)
+from pendcore.derive import document as doc
+from pendcore.derive.document import Block, Document, Heading, Paragraph
 from pendcore.derive.laws.rod_drag import AT_REST
 from pendcore.derive.narration.kinematics import statements
 from pendcore.derive.narration.page import Page
@@ -37,25 +29,37 @@ BY_HAND = 22.0
 """Width in print, in em, of what fits on a line by hand."""
 ROOM = r"\qquad" * 7
 """Room in which an acceleration is written by hand."""
+QUESTIONS = (
+    (
+        Heading(3, "The equations of motion with numbers"),
+        "Put the numbers of the table into the equations of motion. Give the units.",
+        doc.Space(5),
+    ),
+    (
+        Heading(3, "At the start"),
+        "Compute the angular accelerations and the joint reactions at the start. Which way does "
+        "each link begin to turn? Which way does each joint push?",
+        doc.Space(7),
+    ),
+    (
+        Heading(2, "Numerical solution"),
+        "Integrate the first-order system, and draw the angles.",
+        None,
+    ),
+    (
+        Heading(2, "Check by the energy"),
+        "Write down kinetic and potential energy. What is their sum at the start, and {balance}",
+        doc.Space(6),
+    ),
+)
+"""What a worksheet asks after the derivation, and where the answer goes: None is the axes."""
 NAMES = {1: "pendulum", 2: "double pendulum"}
 
 
 def report(
     derivation: Derivation, case: Case, solution: Solution, refusal: str = ""
 ) -> Document:
-    """Return the derivation of a case with its solution.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of the case's scene.
-    case : Case
-        The case, with its start.
-    solution : Solution
-        The run of the case, as `motion.solved` returns it.
-    refusal : str
-        What an `AccuracyError` said, if the solution comes from one.
-    """
+    """Return the derivation of a case with its solution, as `motion.solved_or_refused` has it."""
     figures = Figures(derivation, case.q0)
     blocks = [
         *_problem(derivation, case, figures),
@@ -81,25 +85,10 @@ def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Documen
     blocks: list[Block] = [
         *_problem(derivation, case, figures, by_hand=True),
         *_steps(derivation, figures, blanks=True),
-        Heading(3, "The equations of motion with numbers"),
-        Paragraph("Put the numbers of the table into the equations of motion. Give the units."),
-        Space(5),
-        Heading(3, "At the start"),
-        Paragraph(
-            "Compute the angular accelerations and the joint reactions at the start. Which way "
-            "does each link begin to turn? Which way does each joint push?"
-        ),
-        Space(7),
-        Heading(2, "Numerical solution"),
-        Paragraph("Integrate the first-order system, and draw the angles."),
-        figures.empty_axes(solution),
-        Heading(2, "Check by the energy"),
-        Paragraph(
-            "Write down kinetic and potential energy. What is their sum at the start, and "
-            f"{balance}"
-        ),
-        Space(6),
     ]
+    axes = figures.empty_axes(solution)
+    for heading, question, space in QUESTIONS:
+        blocks += [heading, Paragraph(question.format(balance=balance)), space or axes]
     return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
 
 
@@ -132,7 +121,7 @@ def _problem(
         for p in derivation.symbols.parameters
         if not (by_hand and p.value == AT_REST)
     ]  # fmt: skip
-    yield Table(("symbol", "meaning", "value", "unit"), tuple(rows), "llrl")
+    yield doc.Table(("symbol", "meaning", "value", "unit"), tuple(rows), "llrl")
     yield Paragraph(
         "Find the equations of motion, the joint reactions and the motion that follows from"
     )
@@ -143,7 +132,7 @@ def _problem(
         for q, qd, angle, rate in zip(s.q, s.qd, case.q0, case.qd0, strict=True)
     ]
     body = " \\\\\n".join(lines)
-    yield Displayed(f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}")
+    yield doc.Displayed(f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}")
     yield Paragraph(f"from $t = {quantity(start, 's')}$ to $t = {quantity(end, 's')}$.")
 
 
@@ -189,7 +178,7 @@ def _blanks(step: Step, names: dict[Any, Any]) -> Iterator[Block]:
                 latex = rf"{' '.join(factors)} \, \underbrace{{{ROOM}}}_{{{last}}}"
             known.append(left)
             lines = 1 + int(line_breaks.width(equation.side_latex(equation.rhs)) / BY_HAND)
-            yield Blank(latex, tag if equation is equations[-1] else None, lines)
+            yield doc.Blank(latex, tag if equation is equations[-1] else None, lines)
 
 
 def _names(derivation: Derivation) -> dict[Any, Any]:
