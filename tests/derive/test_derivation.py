@@ -19,8 +19,6 @@ from pendcore._scene.effect_description import effects
 from pendcore.derive import Derivation
 from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
-
-
 from reference.arithmetic import multiple_precision
 from reference.effects import law
 from reference.newton_euler import Body

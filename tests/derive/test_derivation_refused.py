@@ -8,8 +8,8 @@ import sys
 import pendcore as pc
 import pytest
 from pendcore.derive import Derivation
-from pendcore.derive.laws import LAWS, WITHOUT_LAW
 from pendcore.derive.derivation import WRITTEN_OUT
+from pendcore.derive.laws import LAWS, WITHOUT_LAW
 
 pytestmark = pytest.mark.unsanitized
 

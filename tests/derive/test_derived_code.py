@@ -301,9 +301,7 @@ def test_a_header_is_not_called_as_what_is_in_it(given: dict[str, str]) -> None:
 def test_what_is_shared_is_computed_once_before_it_is_needed() -> None:
     q1, q2, m, L, f, h = sympy.symbols("q1 q2 m L f h", real=True)
     once = L**2 * m
-    found = share(
-        [f * sympy.sin(q1), f + once], [(f, once * sympy.cos(q1 - q2)), (h, q2 * f)]
-    )
+    found = share([f * sympy.sin(q1), f + once], [(f, once * sympy.cos(q1 - q2)), (h, q2 * f)])
     known = {q1, q2, m, L}
     for symbol, value in found.assignments:
         assert value.free_symbols <= known

@@ -35,7 +35,7 @@ def told(of: pc.Case) -> str:
         ({}, "order 8, and by Radau IIA where the equations are stiff, with the tolerances"),
         ({"rtol": 1e-4, "atol": 1e-6}, r"tolerances $r = 0.0001$ and $a = 1 \times 10^{-6}$"),
         ({"method": "ode45"}, "that of MATLAB's `ode45`, with the tolerances"),
-        ({"method": "Radau"}, "by Radau IIA, an implicit method of order 5, with"),
+        ({"method": "Radau"}, "Radau IIA, an implicit method of order 5, with"),
         ({"method": "rk4", "step": 0.01}, "the classical Runge-Kutta method of order 4, with a"),
     ],
 )
@@ -136,7 +136,9 @@ def test_small_numbers_are_printed_and_rounding_of_0_is_not() -> None:
     small = pc.Case(scene=pc.Scene(links=rods), q0=0.3, t_span=(0, 0.01))
     assert r"M_{22} &= 3.33333 \times 10^{-15}" in told(small).split("### At the start")[1]
     for degrees in ((90.0, 90.0), (180.0, 90.0), (-90.0, -90.0), (90.0, 0.0)):
-        start = told(case(2, q0=np.radians(degrees))).split("### At the start\n")[1].split("\n##")[0]
+        start = (
+            told(case(2, q0=np.radians(degrees))).split("### At the start\n")[1].split("\n##")[0]
+        )
         before, after = start.split("The two differ by at most")
         assert not re.search(r"10\^\{-(1[2-9]|[2-9]\d)\}", before), before
         assert "printed as 0" in after

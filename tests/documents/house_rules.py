@@ -70,8 +70,8 @@ PYTHON_LAYERS = [
     "_ensemble",
     "_api",
     "cost",
-    "derive",
     "pendcore",
+    "derive",
     "cli",
 ]
 

@@ -49,20 +49,9 @@ def of_differences(expression: Expr) -> Expr:
 class Chain:
     """Where the links are and how they move, as expressions.
 
-    Parameters
-    ----------
-    notation : Notation
-        The symbols.
-    path : (sympy.Expr, sympy.Expr)
-        Position of the pivot, a function of time alone, m.
-
-    Attributes
-    ----------
-    pivot : (sympy.Expr, sympy.Expr)
-        The pivot's position as symbols, ``x_A`` and ``y_A``; 0 along an axis on which the pivot
-        does not move.
-    path : dict
-        These symbols and their rates, ``xd_A`` to ``ydd_A``, each with its function of time.
+    ``path`` is the position of the pivot, a function of time alone, m. The pivot itself is given by
+    symbols, ``x_A`` and ``y_A``, or 0 along an axis on which it does not move; the attribute
+    ``path`` holds these symbols and those of their rates, each with its function of time.
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:

@@ -45,7 +45,7 @@ class Motion:
 
     @cached_property
     def mass_matrix(self) -> Matrix:
-        """M of ``M qdd = forcing``, (n, n), kg m^2, with all joints free, even if some are locked."""
+        """M of ``M qdd = forcing``, (n, n), kg m^2, of the chain with all its joints free."""
         rows = [
             [of_differences((line.inertia - line.acting).diff(a)) for a in self.symbols.qdd]
             for line in self.equations.without_reactions
@@ -179,7 +179,7 @@ class Motion:
 
     @property
     def shared(self) -> Assignments:
-        """Assignments that lead to `shared_accelerations`: laws, entries of M and f, elimination."""
+        """What leads to `shared_accelerations`: laws, entries of M and f, elimination."""
         return self._elimination[0]
 
     @property

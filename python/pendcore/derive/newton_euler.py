@@ -57,14 +57,7 @@ class PayloadEquations(NamedTuple):
 
 
 class NewtonEuler:
-    """The equations of all links of a chain.
-
-    Parameters
-    ----------
-    chain : Chain
-        Kinematics.
-    laws : sequence of Law
-        What acts besides gravity.
+    """The equations of all links of a chain, with what acts on them besides gravity.
 
     Attributes
     ----------
@@ -72,10 +65,8 @@ class NewtonEuler:
         The unknown forces, N: F_01, F_21, F_32, ...
     loads : list of LinkLoad
         The forces on links and their moments.
-    locked : list of int
-        The locked joints.
-    holding : dict
-        Unknown couples of the locked joints on the link beyond them, N m.
+    locked, holding : list of int, dict
+        The locked joints, and their unknown couples on the link beyond them, N m.
     armatures : list of Expr
         Moment of inertia of the rotors at each joint, kg m^2.
     """
@@ -91,7 +82,7 @@ class NewtonEuler:
         self.holding = {j: symbol(f"Lambda{j}", rf"\Lambda_{{{j}}}") for j in self.locked}
         self.armatures = [NOTHING] * self.n
         for law in laws:
-            if law.armature != 0:
+            if law.armature is not None:
                 self.armatures[law.effect.joint - 1] += law.armature
 
     def _force(self, pair: str) -> tuple[Symbol, Symbol]:

@@ -67,7 +67,7 @@ class Equation:
 
     def rows(self, margin: float = 0.0) -> list[str]:
         """Return the equation on as many rows as it takes; see `line_breaks.rows`."""
-        return line_breaks.rows(*map(self.side_latex, (self.lhs, self.rhs)), margin)
+        return line_breaks.rows(self.side_latex(self.lhs), self.side_latex(self.rhs), margin)
 
     def _repr_latex_(self) -> str:
         tag = rf" \tag{{{self.number}}}" if self.number else ""

@@ -16,15 +16,7 @@ if TYPE_CHECKING:
 
 
 class Computation(NamedTuple):
-    """What is assigned first, in order, and the results that follow from it.
-
-    Attributes
-    ----------
-    assignments : tuple of (Symbol, Expr)
-        Each in terms of what is known from outside and of those before it.
-    results : tuple of Expr
-        As many as were asked for, in the same order.
-    """
+    """What is assigned first, each in terms of what is known before, and the results."""
 
     assignments: Assignments
     results: tuple[Expr, ...]

@@ -138,13 +138,6 @@ def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendul
 
     Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
     ``reactions``, ``energy`` and, where effects do work, ``powers``.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of any scene.
-    name, namespace : str, default "Chain" and "pendulum"
-        The name of the struct, and the namespace in which it stands.
     """
     found, powers = computations(derivation), powers_by_name(derivation)
     inside = {symbol.name for one in found.values() for symbol, _ in one.assignments}

@@ -77,7 +77,10 @@ def constants(derivation: Derivation, statement: str, remark: str) -> str:
     lines = []
     for number, words in rows:
         beside = f"{number:{width}}  {words}"
-        above = [number[: len(number) - len(number.lstrip())] + words.replace("///<", "///"), number]
+        above = [
+            number[: len(number) - len(number.lstrip())] + words.replace("///<", "///"),
+            number,
+        ]
         lines += [beside] if len(beside) <= COLUMNS else above
     return "\n".join(lines)
 

@@ -52,14 +52,8 @@ COMMENT = """\
 def function_file(derivation: Derivation, name: str = "RR") -> str:
     """Return the text of a function file for ``ode45``, such as the textbook's RR.m.
 
-    The scene's numbers stand at its top, by name, and what expressions share is computed once.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of any scene.
-    name : str, default "RR"
-        The name of the function; the file has to have the same name, with ``.m``.
+    The scene's numbers stand at its top, by name, and what expressions share is computed once. The
+    file has to have the name of the function, with ``.m``.
     """
     computation, state = computations(derivation)["accelerations"], _state(derivation)
 

@@ -68,11 +68,6 @@ def module(derivation: Derivation) -> str:
     The scene's numbers stand at its top, by name; ``right_hand_side(t, y)`` is for SciPy's
     ``solve_ivp``; ``accelerations``, ``reactions``, ``energies`` and ``powers`` take ``t, q, qd``
     with any axes after that of the links.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation of any scene.
     """
     n, found = derivation.n, computations(derivation)
     text = MODULE.format(

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from sympy import Expr, Integer, Symbol, sin
+from sympy import Expr, Symbol, sin
 
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.notation import Notation
@@ -73,7 +73,7 @@ class Law:
     definitions: Callable[[Chain], tuple[Definition, ...]] = lambda chain: ()
     load: LinkLoad | None = None
     power: Callable[[Chain, Vector], Expr] | None = None
-    armature: Expr = Integer(0)
+    armature: Expr | None = None
     payload: tuple[Expr, Expr] | None = None
     pivot: Vector | None = None
     locks: bool = False

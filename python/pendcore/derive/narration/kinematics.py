@@ -78,8 +78,9 @@ def _mobility(page: Page) -> None:
     symbol = page.symbol("M", "M")
     page.step(
         "Degrees of freedom",
-        f"Of the chain $n = {k}$ counts the moving links, $c_{{5}} = {k}$ the joints that leave one "
-        f"degree of freedom, and $c_{{4}} = 0$ those that leave two.{locks} The generalized coordinates are the angles of the links: {angles}.",
+        f"Here $n = {k}$ counts the moving links, $c_{{5}} = {k}$ the joints that leave one degree "
+        f"of freedom, and $c_{{4}} = 0$ those that leave two.{locks} The generalized coordinates "
+        f"are the angles of the links: {angles}.",
         page.equation(symbol, Formula("3 n - 2 c_{5} - c_{4}")),
         page.equation(symbol, Formula(rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")),
     )

@@ -13,7 +13,7 @@ from pendcore.derive.step import Equation, Formula
 def newton_euler(page: Page) -> None:
     """Write the equations of every link."""
     for i, link in enumerate(page.equations.links, start=1):
-        _first(page, link) if link.about_pivot else _other(page, i, link)
+        _link(page, i, link)
     if page.equations.payload is not None:
         _payload(page, page.equations.payload)
 
@@ -84,73 +84,67 @@ def _far_in_words(page: Page, i: int) -> str:
     return text
 
 
-def _first(page: Page, link: LinkEquations) -> None:
-    """Link 1, about the fixed point A: (2.1) and (2.2)."""
-    begin, end, center = page.joint(0), page.joint(1), page.center(1)
-    _, far = _forces(page, 1)
+def _link(page: Page, i: int, link: LinkEquations) -> None:
+    """Write a link: link 1 about the fixed point A, (2.1) and (2.2), or about its mass centre.
 
-    def at(point: Formula) -> tuple[object, object]:
-        return page.coordinate("x", point), page.coordinate("y", point)
-
-    moments = [page.determinant(at(center), page.equations.weight(page.s.masses[0]))]
-    if far is not None:
-        moments.append(page.determinant(at(end), page.equations.far_force(1)))
-    written = [page.equation(page.along("k", link.moment.inertia), total(moments))]
-    page.step(
-        "Newton-Euler equations of link 1",
-        "$\\mathbf{F}_{01}$ is the joint reaction of the ground 0 on link 1 at $A$."
-        f"{_far_in_words(page, 1)} As link 1 turns about the fixed point $A$, the sum of the "
-        "moments about $A$ equals the moment of inertia about $A$ times the angular acceleration, "
-        "and $\\mathbf{F}_{01}$ has no moment.",
-        _newton(page, 1),
-        _euler(page, 1, center),
-        _euler(page, 1, begin, "2.1"),
-        *([] if page.equations.laws else written),
-        page.equation(link.moment.inertia, link.moment.acting, "2.2"),
-        *_components(page, 1, link),
-    )
-
-
-def _other(page: Page, i: int, link: LinkEquations) -> None:
-    """Write a link about its mass centre; link 2 is that of (2.3) to (2.8)."""
-    center, mass = page.center(i), page.s.masses[i - 1]
-    own = i == 2  # the textbook numbers the equations of link 2
-    pair, back = f"{i - 1}{i}", f"{i}{i - 1}"
-    joint = (
-        " $\\mathbf{F}_{01}$ is the joint reaction of the ground 0 on link 1 at $A$."
-        if i == 1
-        else f" $\\mathbf{{F}}_{{{pair}}} = -\\mathbf{{F}}_{{{back}}}$ is the joint reaction of "
-        f"link {i - 1} on link {i}."
-    )
-    out: list[Equation] = []
-    if own and page.n == 2:
-        accelerations = page.chain.center_accelerations[i - 1]
-        out = [_determinant(page, link)] + [
-            page.equation(mass * a, line.acting, number)
-            for a, line, number in zip(accelerations, link.newton, ("2.6", "2.7"), strict=True)
-        ]
-    page.step(
-        f"Newton-Euler equations of link {i}",
-        "Mass times acceleration is the sum of the forces, and moment of inertia times angular "
-        f"acceleration is the sum of the moments about ${center}$.{joint}"
-        f"{_far_in_words(page, i) if i in (1, page.n) else ''}",
+    Link 2 about its mass centre is that of (2.3) to (2.8).
+    """
+    center, own, joint = page.center(i), i == 2, f"link {i - 1}" if i > 1 else "the ground 0"
+    pair, back = f"\\mathbf{{F}}_{{{i - 1}{i}}}", f"\\mathbf{{F}}_{{{i}{i - 1}}}"
+    text = f"${pair} = -{back}$" if i > 1 else f"${pair}$"
+    text += f" is the joint reaction of {joint} on link {i} at ${page.joint(i - 1)}$."
+    text += _far_in_words(page, i) if i in (1, page.n) else ""
+    moment = page.equation(link.moment.inertia, link.moment.acting, "2.8" if own else None)
+    found = [
         _newton(page, i, "2.3" if own else None),
         _euler(page, i, center, "2.4" if own else None),
-        *_components(page, i, link),
-        *out,
-        page.equation(link.moment.inertia, link.moment.acting, "2.8" if own else None),
+    ]
+    if link.about_pivot:
+        text += (
+            " As the link turns about the fixed point $A$, the sum of the moments about $A$ equals "
+            f"the moment of inertia about $A$ times the angular acceleration, and ${pair}$ has no "
+            "moment."
+        )
+        found.append(_euler(page, i, page.joint(0), "2.1"))
+        found += [] if page.equations.laws else [_moments_about_pivot(page, link)]
+        moment = page.equation(link.moment.inertia, link.moment.acting, "2.2")
+        found += [moment, *_components(page, i, link)]
+    else:
+        text += (
+            " Mass times acceleration is the sum of the forces, and moment of inertia times "
+            f"angular acceleration is the sum of the moments about ${center}$."
+        )
+        found += _components(page, i, link)
+        found += _written_out(page, link) if own and page.n == 2 else []
+        found.append(moment)
+    page.step(f"Newton-Euler equations of link {i}", text, *found)
+
+
+def _moments_about_pivot(page: Page, link: LinkEquations) -> Equation:
+    """Return the moments of G_1 and F_21 about A as determinants."""
+    forces = [(page.center(1), page.equations.weight(page.s.masses[0]))]
+    forces += [(page.joint(1), page.equations.far_force(1))] if page.n > 1 else []
+    moments = (
+        page.determinant((page.coordinate("x", at), page.coordinate("y", at)), force)
+        for at, force in forces
     )
+    return page.equation(page.along("k", link.moment.inertia), total(moments))
 
 
-def _determinant(page: Page, link: LinkEquations) -> Equation:
-    """Return (2.5): the moment of F_12 about C_2 as a determinant, and what effects add to it."""
+def _written_out(page: Page, link: LinkEquations) -> list[Equation]:
+    """Return (2.5), the moment of F_12 about C_2 and what effects add to it, (2.6) and (2.7)."""
     begin, center, force = page.joint(1), page.center(2), page.equations.near_force(2)
     x, y = (page.coordinate(axis, begin) - page.coordinate(axis, center) for axis in "xy")
     known = minus(page.chain.joints[1], page.chain.centers[1])
     rest = expand(link.moment.acting - cross(known, force))
     more = [page.along("k", term) for term in page.s.terms(rest) if term != 0]
     left = page.along("k", link.moment.inertia)
-    return page.equation(left, total([page.determinant((x, y), force), *more]), "2.5")
+    return [page.equation(left, total([page.determinant((x, y), force), *more]), "2.5")] + [
+        page.equation(page.s.masses[1] * a, line.acting, number)
+        for a, line, number in zip(
+            page.chain.center_accelerations[1], link.newton, ("2.6", "2.7"), strict=True
+        )
+    ]
 
 
 def _payload(page: Page, payload: PayloadEquations) -> None:
@@ -166,10 +160,10 @@ def _payload(page: Page, payload: PayloadEquations) -> None:
         moment = [page.equation(page.scaled(payload.inertia, alpha), couple)]
     page.step(
         "Newton-Euler equations of the payload" if moment else "Newton's equations of the payload",
-        f"The opposite of ${force}$ acts on the payload, whose mass centre is at "
-        f"${tip}$.{turning}",
+        f"The opposite of ${force}$ acts on the payload, whose mass centre is at ${tip}$.{turning}",
         page.equation(
-            page.scaled(mass, page.vector("a", tip)), total([Formula(f"-{force}"), page.vector("G", "p")])
+            page.scaled(mass, page.vector("a", tip)),
+            total([Formula(f"-{force}"), page.vector("G", "p")]),
         ),
         *(
             page.equation(mass * page.coordinate(axis, tip, 2), line.acting)

@@ -33,19 +33,7 @@ ERRATA = {
 
 
 class Page:
-    """Steps as they are written.
-
-    Attributes
-    ----------
-    derivation : Derivation
-        The equations that the steps derive.
-    is_uniform : bool
-        Whether all links are uniform rods.
-    is_textbook : bool
-        Whether the equations are the textbook's: two uniform rods and nothing else.
-    steps : list of Step
-        The steps written so far.
-    """
+    """Steps as they are written, with the number of the next and the names of what is in them."""
 
     def __init__(self, derivation: Derivation) -> None:
         self.derivation = derivation

@@ -27,8 +27,8 @@ def equations_of_motion(page: Page) -> None:
     law, locked = page.derivation.law, page.derivation.locking
     text = (
         "The reactions are put into the moment equations, and the terms with accelerations are "
-        f"collected on the left: ${law}$, with a symmetric matrix $M$. $\\sin^{{2}} + \\cos^{{2}} = "
-        "1$ and the formulas for the sine and cosine of a difference make it short."
+        f"collected on the left: ${law}$, with a symmetric matrix $M$, whose entries are short by "
+        "the formulas for the sine and cosine of a difference."
     )
     if locked:
         text += (

@@ -72,7 +72,7 @@ def _written(
 ) -> tuple[list[Path], list[Path]]:
     """Write every file that can be written; return these, and the others."""
     figures = {one.name: one for document in documents.values() for one in document.drawings}
-    writers = [
+    writers: list[tuple[Path, Callable[[Path], object]]] = [
         *(one for name, document in documents.items() for one in _texts(document, folder, name)),
         *((folder / one.file(Reader.PEOPLE), partial(save, one)) for one in figures.values()),
     ]

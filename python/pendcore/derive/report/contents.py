@@ -1,17 +1,22 @@
-"""The report and the worksheet of a case: the same document, with answers or with blanks."""
+"""The report and the worksheet of a case: the same problem, with answers or with blanks.
+
+Both are templates, in which ``@{name}`` alone in a paragraph stands for blocks, else for text.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import degrees
+from pathlib import Path
+from string import Template
 from typing import TYPE_CHECKING, Any
 
 from sympy import Expr
 
 import pendcore
-from pendcore.derive import line_breaks, narration
 from pendcore.derive import document as doc
+from pendcore.derive import line_breaks, narration
 from pendcore.derive.document import Block, Document, Heading, Paragraph
 from pendcore.derive.laws.rod_drag import AT_REST
 from pendcore.derive.narration.kinematics import statements
@@ -29,48 +34,49 @@ BY_HAND = 22.0
 """Width in print, in em, of what fits on a line by hand."""
 ROOM = r"\qquad" * 7
 """Room in which an acceleration is written by hand."""
-QUESTIONS = (
-    (
-        Heading(3, "The equations of motion with numbers"),
-        "Put the numbers of the table into the equations of motion. Give the units.",
-        doc.Space(5),
-    ),
-    (
-        Heading(3, "At the start"),
-        "Compute the angular accelerations and the joint reactions at the start. Which way does "
-        "each link begin to turn? Which way does each joint push?",
-        doc.Space(7),
-    ),
-    (
-        Heading(2, "Numerical solution"),
-        "Integrate the first-order system, and draw the angles.",
-        None,
-    ),
-    (
-        Heading(2, "Check by the energy"),
-        "Write down kinetic and potential energy. What is their sum at the start, and {balance}",
-        doc.Space(6),
-    ),
-)
-"""What a worksheet asks after the derivation, and where the answer goes: None is the axes."""
 NAMES = {1: "pendulum", 2: "double pendulum"}
 
+Parts = Mapping[str, Any]
+"""What stands in a template: text, or a list of blocks."""
 
-def report(
-    derivation: Derivation, case: Case, solution: Solution, refusal: str = ""
-) -> Document:
+
+class AtSign(Template):
+    """A text with places like ``@{chain}``: dollars belong to LaTeX."""
+
+    delimiter = "@"
+
+
+def filled(name: str, parts: Parts) -> list[Block]:
+    """Return the blocks of a template; paragraphs that are left empty are left out."""
+    found: list[Block] = []
+    template = Path(__file__).with_name("templates") / f"{name}.md"
+    for paragraph in template.read_text("utf-8").strip().split("\n\n"):
+        text, key = " ".join(paragraph.splitlines()), paragraph[2:-1]
+        if not isinstance(blocks := parts.get(key, ""), str):
+            found += blocks
+            continue
+        text = AtSign(text).substitute(parts)
+        hashes, _, title = text.partition(" ")
+        if hashes in ("##", "###"):
+            found.append(Heading(len(hashes), title))
+        elif text:
+            found.append(Paragraph(text.strip("*"), is_remark=text[0] == "*" != text[1]))
+    return found
+
+
+def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
     """Return the derivation of a case with its solution, as `motion.solved_or_refused` has it."""
     figures = Figures(derivation, case.q0)
-    blocks = [
-        *_problem(derivation, case, figures),
-        *_steps(derivation, figures),
-        *numbers.numbers_put_in(derivation),
-        *numbers.at_the_start(derivation, case),
-        *motion.numerical_solution(derivation, solution, figures, refusal),
-        *motion.energy_check(derivation, solution, figures),
-        Paragraph(f"Derived with SymPy and solved by pendcore {pendcore.__version__}.", True),
-    ]
-    return Document(_title(derivation, case), tuple(blocks))
+    parts = {
+        "problem": _problem(derivation, case, figures),
+        "steps": _steps(derivation, figures),
+        **numbers.put_in(derivation),
+        **numbers.at_the_start(derivation, case),
+        **motion.numerical_solution(derivation, solution, figures, refusal),
+        **motion.energy_check(derivation, solution, figures),
+        "version": pendcore.__version__,
+    }
+    return Document(_title(derivation, case), tuple(filled("report", parts)))
 
 
 def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Document:
@@ -82,14 +88,15 @@ def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Documen
             "how much did the effects take or give until the end, and how well does your solution "
             "keep the balance?"
         )
-    blocks: list[Block] = [
-        *_problem(derivation, case, figures, by_hand=True),
-        *_steps(derivation, figures, blanks=True),
-    ]
-    axes = figures.empty_axes(solution)
-    for heading, question, space in QUESTIONS:
-        blocks += [heading, Paragraph(question.format(balance=balance)), space or axes]
-    return Document(f"{_title(derivation, case)}: worksheet", tuple(blocks))
+    parts = {
+        "problem": _problem(derivation, case, figures, by_hand=True),
+        "steps": _steps(derivation, figures, blanks=True),
+        "axes": [figures.empty_axes(solution)],
+        "balance": balance,
+        "five_lines": [doc.Space(5)], "six_lines": [doc.Space(6)], "seven_lines": [doc.Space(7)],
+    }  # fmt: skip
+    title = f"{_title(derivation, case)}: worksheet"
+    return Document(title, tuple(filled("worksheet", parts)))
 
 
 def _title(derivation: Derivation, case: Case) -> str:
@@ -99,59 +106,47 @@ def _title(derivation: Derivation, case: Case) -> str:
 
 def _problem(
     derivation: Derivation, case: Case, figures: Figures, *, by_hand: bool = False
-) -> Iterator[Block]:
-    """Yield what is given, and Fig. 1; by hand without what only avoids 0/0."""
-    page, write = Page(derivation), derivation.symbols.latex
-    yield Heading(2, "The problem")
-    yield Paragraph(
-        f"A planar {NAMES.get(derivation.n, f'chain of {derivation.n} links')} (Fig. 1) moves in a "
-        "vertical plane. The $x$ axis points to the right and the $y$ axis down; the angles are "
-        "measured from the $x$ axis towards the $y$ axis, and turning from $x$ to $y$ is positive."
-        f"{' The links are uniform rods.' if page.is_uniform else ''}"
-    )
+) -> list[Block]:
+    """Return what is given, and Fig. 1; by hand without what only avoids 0/0."""
+    page, s, write = Page(derivation), derivation.symbols, derivation.symbols.latex
     gravity = "gravity and " if derivation.scene.gravity else ""
     nothing = f"Nothing acts on the chain but {gravity}the joint that holds it."
-    for statement in statements(page) if derivation.equations.laws else [nothing]:
-        yield Paragraph(statement)
-    yield figures.mechanism()
-    yield Paragraph("These numbers are given:")
-    rows = [
-        tuple(f"${x}$" if k != 1 else x for k, x in enumerate(
-            (write(p.symbol), p.meaning, number(p.value, 10), unit(p.unit) or "-")))
-        for p in derivation.symbols.parameters
-        if not (by_hand and p.value == AT_REST)
-    ]  # fmt: skip
-    yield doc.Table(("symbol", "meaning", "value", "unit"), tuple(rows), "llrl")
-    yield Paragraph(
-        "Find the equations of motion, the joint reactions and the motion that follows from"
+    rows = tuple(
+        (f"${write(symbol)}$", meaning, f"${number(value, 10)}$", f"${unit(name) or '-'}$")
+        for symbol, value, name, meaning in s.parameters
+        if not (by_hand and value == AT_REST)
     )
-    (start, end), s = case.t_span, derivation.symbols
-    lines = [
-        rf"{write(q)}({number(start)}) &= {quantity(angle, 'rad')} = {number(degrees(angle))}"
-        rf"^\circ, & {write(qd)}({number(start)}) &= {quantity(rate, 'rad/s')}"
+    begin, end = (quantity(t, "s") for t in case.t_span)
+    initial = " \\\\\n".join(
+        rf"{write(q)}({number(case.t_span[0])}) &= {quantity(angle, 'rad')} = "
+        rf"{number(degrees(angle))}^\circ, & {write(qd)}({number(case.t_span[0])}) &= "
+        rf"{quantity(rate, 'rad/s')}"
         for q, qd, angle, rate in zip(s.q, s.qd, case.q0, case.qd0, strict=True)
-    ]
-    body = " \\\\\n".join(lines)
-    yield doc.Displayed(f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}")
-    yield Paragraph(f"from $t = {quantity(start, 's')}$ to $t = {quantity(end, 's')}$.")
+    )
+    return filled("problem", {
+        "chain": NAMES.get(derivation.n, f"chain of {derivation.n} links"),
+        "rods": " The links are uniform rods." if page.is_uniform else "",
+        "acts": [Paragraph(x) for x in (statements(page) if page.equations.laws else [nothing])],
+        "mechanism": [figures.mechanism()],
+        "parameters": [doc.Table(("symbol", "meaning", "value", "unit"), rows, "llrl")],
+        "initial": [doc.Displayed(f"\\begin{{aligned}}\n{initial}\n\\end{{aligned}}")],
+        "begin": begin, "end": end,
+    })  # fmt: skip
 
 
-def _steps(
-    derivation: Derivation, figures: Figures, *, blanks: bool = False
-) -> Iterator[Block]:
-    """Yield the derivation; the free bodies come before the first of their equations."""
-    yield Heading(2, "Derivation of the equations of motion")
-    names = _names(derivation)
-    drawn = False
+def _steps(derivation: Derivation, figures: Figures, *, blanks: bool = False) -> list[Block]:
+    """Return the derivation; the free bodies come before the first of their equations."""
+    names, found, drawn = _names(derivation), list[Block](), False
     for step in narration.steps(derivation):
         if step.title == "Effects":
             step = replace(step, text="What acts besides gravity is stated above.")
         heading, text, *displayed = step.blocks(lambda e: _value(e, derivation))
-        yield from (heading, text)
+        found += [heading, text]
         if not drawn and step.title.startswith("Newton-Euler"):
             drawn = True
-            yield figures.free_bodies(forces=not blanks)
-        yield from _blanks(step, names) if blanks else displayed
+            found.append(figures.free_bodies(forces=not blanks))
+        found += _blanks(step, names) if blanks else displayed
+    return found
 
 
 def _value(equation: Equation, derivation: Derivation) -> str:

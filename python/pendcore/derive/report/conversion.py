@@ -115,7 +115,8 @@ def _pandoc(document: Document, reader: Reader, folder: Path, header: str, *opti
     command = [
         "pandoc", "--standalone", "--from=markdown", "--columns=1000",
         f"--metadata=pagetitle:{document.title}", f"--metadata=title:{document.title}",
-        "--metadata=lang:en", f"--include-in-header={head}", f"--output={made}", *options, source,
+        "--metadata=lang:en", f"--include-in-header={head}", f"--output={made}", *options,
+        str(source),
     ]  # fmt: skip
     surroundings = {**os.environ, "LC_ALL": "C.UTF-8"}
     done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=surroundings)

@@ -59,18 +59,9 @@ def save(drawing: Drawing, path: Path) -> None:
 
 @dataclass(slots=True)
 class Sketch:
-    """A sheet to draw on.
+    """A sheet to draw on; ``size`` is the length by which symbols are scaled, m.
 
-    Attributes
-    ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    size : float
-        The length by which symbols are scaled, m.
-    drawn : list of (ndarray (k, 2), float)
-        Points of all lines, and half the width of each line, m: no name can be there.
-    labels : list of Label
-        Names that `finish` places.
+    ``drawn`` are points of all lines, and half the width of each line, m: no name can be there.
     """
 
     axes: Axes

@@ -29,15 +29,7 @@ OF_LINKS = "The angles of the links over time."
 
 
 class Figures:
-    """Draws the figures of a report, and numbers them.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation whose symbols name points and forces.
-    q : sequence of float, (n,)
-        Angles at which the chain is drawn, rad.
-    """
+    """Draws the figures of a report, of a chain at the angles ``q``, rad, and numbers them."""
 
     def __init__(self, derivation: Derivation, q: Sequence[float]) -> None:
         self.derivation = derivation
@@ -115,6 +107,7 @@ class Figures:
                 size = rf"|\mathbf{{F}}{name[1:]}|"
                 curves = {names[0]: x, names[1]: y, size: np.hypot(x, y)}
                 _curves(axis, solution.t, curves, f"${name}$ (N)")
+            axes[-1].set_xlabel("t (s)")
         words = "The joint reactions over time; $y$ points down, so a force upward is negative."
         return self._drawing("reactions", words, figure)
 
@@ -129,6 +122,7 @@ class Figures:
             figure, axes = _sheets(2, 2.4)
             _curves(axes[0], solution.t, curves, "energy (J)")
             _curves(axes[1], solution.t, {"": left}, "balance (J)")
+            axes[1].set_xlabel("t (s)")
             axes[1].ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
         words = (
             "Above: kinetic, potential and total energy over time. Below: the change of $T + V$ "
@@ -155,8 +149,6 @@ def _curves(axis: Axes, t: Floats, curves: dict[str, Floats], label: str) -> Non
         axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     axis.grid(True, color="0.85", linewidth=0.6)
     axis.margins(x=0)
-    if axis.get_subplotspec().is_last_row():
-        axis.set_xlabel("t (s)")
 
 
 def whole_ticks(angles: Floats) -> tuple[float, float, float]:

@@ -26,16 +26,9 @@ TITLE = 18.0
 
 
 def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Figure:
-    """Draw each link at its angle, with what acts on it; arrows show what counts as positive.
+    """Draw each link at its angle, rad, with what acts on it, or alone, as the page names it all.
 
-    Parameters
-    ----------
-    page : Page
-        Names points, forces and couples.
-    q : sequence of float, (n,)
-        Absolute angles, rad.
-    forces : bool
-        Whether what acts on the bodies is drawn.
+    Arrows show what counts as positive.
     """
     from matplotlib.figure import Figure
 

@@ -29,18 +29,9 @@ BLOCKED = 1000.0
 
 @dataclass(slots=True)
 class Label:
-    """A name, with LaTeX between dollars.
+    """A name, with LaTeX between dollars, and the points that it may stand beside, m.
 
-    Attributes
-    ----------
-    text : str
-        The name.
-    places : ndarray, (k, 2)
-        Points that the name may stand beside, the best first, m.
-    towards : ndarray, (2,)
-        The side that is tried first: a vector, y down.
-    style : dict
-        How the name is written.
+    The best point is the first; ``towards`` is the side that is tried first, y down.
     """
 
     text: str
@@ -50,16 +41,10 @@ class Label:
 
 
 def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, float]]) -> None:
-    """Write names where they are clear of what is drawn and of each other.
+    """Write names where they are clear of each other and of what is drawn.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, with their final limits; y down.
-    labels : sequence of Label
-        The names, those with the least choice of place first.
-    drawn : sequence of (ndarray (k, 2), float)
-        Points of lines, and half the width of the line, m.
+    The axes have their final limits, y down. The names with the least choice of place come first.
+    ``drawn`` are points of lines, and half the width of each line, m.
     """
     to_points = 72.0 / axes.figure.dpi
     sheet = axes.get_window_extent().get_points() * to_points
@@ -69,7 +54,7 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
     taken: list[tuple[Floats, Floats]] = []  # centre and half the size of a box
     for label in labels:
         style: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 9} | label.style
-        text = axes.text(*label.places[0], label.text, **style)
+        text = axes.text(label.places[0, 0], label.places[0, 1], label.text, **style)
         box = text.get_window_extent()
         half = np.array([box.width, box.height]) * to_points / 2 + 4.0 * ("bbox" in style)
         anchors = axes.transData.transform(label.places) * to_points
@@ -81,7 +66,8 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
             room = np.minimum(room, np.hypot(*apart.T))
         inside = (found - half > sheet[0]).all(axis=1) & (found + half < sheet[1]).all(axis=1)
         best = found[int(np.argmax(worth + 1.2 * room - BLOCKED * (~inside | (room < 1.5))))]
-        text.set_position(axes.transData.inverted().transform(best / to_points))
+        x, y = axes.transData.inverted().transform(best / to_points)
+        text.set_position((float(x), float(y)))
         taken.append((best, half))
 
 

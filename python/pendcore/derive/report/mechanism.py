@@ -30,16 +30,9 @@ def joints(scene: Scene, q: Sequence[float]) -> Floats:
 
 
 def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure:
-    """Draw the chain at given angles, as in the textbook's Fig. 1.
+    """Draw the chain at given angles, rad, as in the textbook's Fig. 1.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene whose links and effects are drawn.
-    q : sequence of float, (n,)
-        Absolute angles, rad.
-    points : sequence of str, (n + 1,)
-        The names of the pivot, the joints and the tip, as LaTeX: A, B, D in the textbook.
+    ``points`` names the pivot, the joints and the tip in LaTeX: A, B, D in the textbook.
     """
     from matplotlib.figure import Figure
 
@@ -49,7 +42,7 @@ def mechanism(scene: Scene, q: Sequence[float], points: Sequence[str]) -> Figure
     total = float(np.hypot(*np.ptp(np.vstack([places, centers]), axis=0)))
     figure = Figure(figsize=(5.6, 4.6))
     on = drawing.sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), max(total, 0.6 * sum(lengths)))
-    couples = {effect.joint for effect in scene.effects if effect.kind in COUPLES}
+    couples = {getattr(e, "joint", 0) for e in scene.effects if e.kind in COUPLES}
     _frame(on, scene, places)
     for i, angle in enumerate(q, start=1):
         start, end = places[i - 1], places[i]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from inspect import signature
 from math import floor, isfinite, log10
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore import AccuracyError, Case, Solution, simulate
-from pendcore.derive.document import Block, Heading, Paragraph, Table
+from pendcore.derive.document import Paragraph, Table
 from pendcore.derive.report.figures import Figures
 from pendcore.derive.report.quantities import Scales, number, quantity
 
@@ -90,23 +89,25 @@ def takes_time(solution: Solution) -> bool:
 
 def numerical_solution(
     derivation: Derivation, solution: Solution, figures: Figures, refusal: str = ""
-) -> Iterator[Block]:
-    """Yield how the equations were integrated, and with what result."""
-    yield Heading(2, "Numerical solution")
-    yield Paragraph(how(solution))
+) -> dict[str, Any]:
+    """Return how the equations were integrated, and with what result."""
+    complaints, moves = [], takes_time(solution)
     if not solution.success:
-        yield Paragraph(f"**The run is not complete: {solution.message}**")
+        complaints.append(f"**The run is not complete: {solution.message}**")
     elif solution.status == "event":
-        yield Paragraph(f"The run is {solution.message}.")
+        complaints.append(f"The run is {solution.message}.")
     if refusal:
-        yield Paragraph(f"**The run is not shown to be as exact as asked for: {refusal}.**")
-    if not takes_time(solution):
-        yield Paragraph("It ends where it starts: there are no curves to draw.")
-        return
-    yield figures.angles(solution)
-    yield _table(derivation, solution)
-    yield figures.reactions(solution)
-    yield Paragraph(_largest(derivation, solution))
+        complaints.append(f"**The run is not shown to be as exact as asked for: {refusal}.**")
+    if not moves:
+        complaints.append("It ends where it starts: there are no curves to draw.")
+    return {
+        "method": how(solution),
+        "complaints": [Paragraph(words) for words in complaints],
+        "angles": [figures.angles(solution)] if moves else [],
+        "table": [_table(derivation, solution)] if moves else [],
+        "reactions": [figures.reactions(solution)] if moves else [],
+        "largest": _largest(derivation, solution) if moves else "",
+    }
 
 
 def _asked(solution: Solution, name: str) -> Any:
@@ -127,10 +128,8 @@ def how(solution: Solution) -> str:
     first, _, other = solution.method.partition("-")
     words = METHODS.get(first, f"the method `{first}`")
     words += ", and by Radau IIA where the equations are stiff" if other else ""
-    return (
-        f"The first-order system is integrated by {words}, {settings}: {stats.accepted} steps, "
-        f"{stats.nfev} evaluations of the right-hand side."
-    )
+    counts = f"{stats.accepted} steps, {stats.nfev} evaluations of the right-hand side"
+    return f"{words}, {settings}: {counts}"
 
 
 def _table(derivation: Derivation, solution: Solution) -> Table:
@@ -178,33 +177,34 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
     return f"The largest reactions are {', '.join(sentences)}."
 
 
-def energy_check(
-    derivation: Derivation, solution: Solution, figures: Figures
-) -> Iterator[Block]:
-    """Yield the energies in symbols, and how well the run kept them."""
-    yield Heading(2, "Check by the energy")
-    energy = solution.energy()
+def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> dict[str, Any]:
+    """Return the energies in symbols, and how well the run kept them."""
+    energy, moves = solution.energy(), takes_time(solution)
     rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if energy.ledger else "")
+    exactly, kept, rows = "", "The run ends where it starts: there is nothing to compare.", []
     if derivation.energy_rate() == 0:
-        yield Paragraph(
+        exactly = (
             f"With the equations of motion put in, SymPy reduces ${rate}$ to 0: exactly, for all "
             "angles, rates and parameters. What is left in the run is its error."
         )
-    if not takes_time(solution):
-        yield Paragraph("The run ends where it starts: there is nothing to compare.")
-        return
-    start, left, moving = _balance(solution)
-    moving = Scales(derivation).shown(moving, "J")
-    yield Paragraph(
-        f"In the run, $T + V$ is ${quantity(start, 'J')}$ at the start; "
-        f"{'the balance with all work' if energy.ledger else 'it'} stays within "
-        f"${quantity(left, 'J', 2)}$, and the largest kinetic energy is ${quantity(moving, 'J')}$."
-    )
-    if energy.ledger is not None:
+    if moves:
+        start, left, moving = _balance(solution)
+        moving = Scales(derivation).shown(moving, "J")
+        kept = (
+            f"In the run, $T + V$ is ${quantity(start, 'J')}$ at the start; "
+            f"{'the balance with all work' if energy.ledger else 'it'} stays within "
+            f"${quantity(left, 'J', 2)}$, and the largest kinetic energy is "
+            f"${quantity(moving, 'J')}$."
+        )
+    if moves and energy.ledger is not None:
         rows = [("change of $T + V$", f"${number(float(energy.total[-1] - energy.total[0]))}$")]
         for name, entry in energy.ledger.items():
             kind = f"lost: {name}" if name in LOSSES else f"work done: {name}"
             words = "left over" if name == "residual" else kind
             rows.append((words, f"${number(float(entry[-1]))}$"))
-        yield Table(("from start to end", "J"), tuple(rows), "lr")
-    yield figures.energies(solution)
+    return {
+        "exactly": exactly,
+        "kept": kept,
+        "work": [Table(("from start to end", "J"), tuple(rows), "lr")] if rows else [],
+        "energies": [figures.energies(solution)] if moves else [],
+    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import sympy
 from sympy import Expr, Float, Symbol
 
 from pendcore import Case, simulate
-from pendcore.derive.document import Block, Displayed, Heading, Paragraph, Table
+from pendcore.derive.document import Displayed, Table
 from pendcore.derive.line_breaks import aligned, rows
 from pendcore.derive.motion import needed
 from pendcore.derive.report.quantities import DIGITS, ROUNDING, Scales, number, quantity, unit
@@ -21,33 +20,37 @@ if TYPE_CHECKING:
     from pendcore.derive.report.drawing import Floats
 
 
-def numbers_put_in(derivation: Derivation) -> Iterator[Block]:
-    """Yield M and f with the numbers of the scene, and the laws in which they are written."""
-    write = derivation.symbols.latex
-    law = r"\mathbf{M}(q)\,\ddot{\mathbf{q}} = \mathbf{f}"
-    law += r" + \boldsymbol{\lambda}" if derivation.locking else ""
-    yield Heading(3, "The equations of motion with numbers")
-    yield Paragraph(
-        r"With the numbers of the table, angles in rad, rates in rad/s and $t$ in s, the equations "
-        rf"of motion ${law}$ have"
-    )
+OF_LOCKS = (
+    "the couples of locks are unknown, and found together with the accelerations, from the "
+    "condition that a locked joint does not turn."
+)
+LOCKS_IN_THE_CORE = (
+    " The core has no couples of locks: in its column they are its mass matrix times the change "
+    "that the locks make to its accelerations."
+)
+
+
+def put_in(derivation: Derivation) -> dict[str, Any]:
+    """Return M and f with the numbers of the scene, and the laws in which they are written."""
+    write, locking = derivation.symbols.latex, derivation.locking
     defined = derivation.equations.definitions
     units = {known.symbol: known.meaning.rpartition(", ")[2] for known in defined}
-    laws = needed([(d.symbol, d.value) for d in defined], derivation.named.entries.values())
-    for block in (laws, derivation.named.entries.items()):
-        lines = [
+    entries = derivation.named.entries
+    laws = needed([(d.symbol, d.value) for d in defined], entries.values())
+    blocks = [
+        [
             row
             for symbol, value in block
             for row in _numeric(derivation, symbol, value, units.get(symbol) or _unit(symbol))
         ]
-        if lines:
-            yield Displayed(aligned(lines))
-    if derivation.locking:
-        told = ", ".join(f"${write(x)} = {write(value)}$" for x, value in derivation.locking.items())
-        yield Paragraph(
-            f"and {told}: the couples of locks are unknown, and found together with the "
-            "accelerations, from the condition that a locked joint does not turn."
-        )
+        for block in (laws, entries.items())
+    ]
+    told = ", ".join(f"${write(name)} = {write(value)}$" for name, value in locking.items())
+    return {
+        "locking": r" + \boldsymbol{\lambda}" if locking else "",
+        "numbers": [Displayed(aligned(rows)) for rows in blocks if rows],
+        "couples": f"and {told}: {OF_LOCKS}" if locking else "",
+    }
 
 
 def _unit(entry: Symbol) -> str:
@@ -130,48 +133,30 @@ class Start:
         return {joint: float(couples[joint - 1]) for joint in joints}
 
 
-def at_the_start(derivation: Derivation, case: Case) -> Iterator[Block]:
-    """Yield the accelerations, reactions and energies at the start, beside the core's."""
+def at_the_start(derivation: Derivation, case: Case) -> dict[str, Any]:
+    """Return the accelerations, reactions and energies at the start, beside the core's."""
     start, write, s = Start(derivation, case), derivation.symbols.latex, derivation.symbols
     table = start.rows()
-    yield Heading(3, "At the start")
     state = [(x, angle, "rad") for x, angle in zip(s.q, case.q0, strict=True)]
     state += [(x, rate, "rad/s") for x, rate in zip(s.qd, case.qd0, strict=True)]
-    yield Paragraph(
-        f"At $t = {quantity(case.t_span[0], 's')}$, with "
-        f"{', '.join(f'${write(x)} = {quantity(value, of)}$' for x, value, of in state)}, "
-        "the entries of $\\mathbf{M}$ and $\\mathbf{f}$ are"
-    )
     entries = {x: start.value(value) for x, value in derivation.known.items()}
     measures = [("N m", value) for x, value in entries.items() if _unit(x) == "N m"]
     scales = Scales(derivation, [*measures, *((u, x) for _, u, *both in table for x in both)])
-    yield Displayed(aligned([
-        f"{write(x)} &= {quantity(value, _unit(x))}"
-        for x, value in _without_rounding(entries, scales).items()
-    ]))  # fmt: skip
-    locked = bool(derivation.equations.locked)
-    yield Paragraph(
-        f"They give the accelerations{' and the couples of the locks' * locked}, and these give "
-        "the reactions. The compiled core of pendcore, which has its equations from elsewhere, "
-        "computes the same:"
-    )
-    cells = [
+    shown = _without_rounding(entries, scales).items()
+    cells = tuple(
         (f"${name}$", *(f"${number(scales.shown(x, u))}$" for x in both), f"${unit(u)}$")
         for name, u, *both in table
-    ]
-    yield Table(("", "by this derivation", "by the core", "unit"), tuple(cells), "lrrl")
+    )
     off = max(abs(a - b) / (scales.of[u] or 1.0) for _, u, a, b in table)
-    core = (
-        " The core has no couples of locks: in its column they are its mass matrix times the "
-        "change that the locks make to its accelerations."
-    )
-    yield Paragraph(
-        "A force is measured by the weights, an acceleration by $g$ over the shortest length, a "
-        "couple or an energy by the weights times the lengths, or by the largest of its unit "
-        f"where that is larger. The two differ by at most ${number(off, 2)}$ of this measure. What "
-        f"is below ${number(ROUNDING)}$ of it is what rounding leaves of 0, and is printed as 0."
-        f"{core * locked}"
-    )
+    return {
+        "begin": quantity(case.t_span[0], "s"),
+        "state": ", ".join(f"${write(x)} = {quantity(value, of)}$" for x, value, of in state),
+        "entries": [Displayed(aligned(
+            [f"{write(x)} &= {quantity(value, _unit(x))}" for x, value in shown]))],
+        "compared": [Table(("", "by this derivation", "by the core", "unit"), cells, "lrrl")],
+        "off": number(off, 2), "rounding": number(ROUNDING),
+        "of_locks": LOCKS_IN_THE_CORE if derivation.equations.locked else "",
+    }  # fmt: skip
 
 
 def _without_rounding(entries: dict[Symbol, float], scales: Scales) -> dict[Symbol, float]:

@@ -40,14 +40,8 @@ class Scales:
     """Scales by unit, and which numbers are 0 but for rounding.
 
     A force is measured by the weights, an acceleration by g over the shortest length, a couple or
-    an energy by the weights times the lengths, or by the largest of its unit where that is larger.
-
-    Parameters
-    ----------
-    derivation : Derivation
-        The derivation that has masses, lengths and gravity.
-    found : iterable of (str, float)
-        Numbers with their units.
+    an energy by the weights times the lengths, or by the largest ``found`` of its unit where that
+    is larger.
     """
 
     def __init__(self, derivation: Derivation, found: Iterable[tuple[str, float]] = ()) -> None:
