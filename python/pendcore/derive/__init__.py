@@ -20,9 +20,8 @@ except ModuleNotFoundError as error:
         name=error.name,
     ) from None
 
-from pendcore.derive import report
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.notation import Notation, Parameter
 from pendcore.derive.step import Equation, Formula, Step
 
-__all__ = ["Derivation", "Equation", "Formula", "Notation", "Parameter", "Step", "report"]
+__all__ = ["Derivation", "Equation", "Formula", "Notation", "Parameter", "Step"]

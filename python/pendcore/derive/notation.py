@@ -7,10 +7,11 @@ keeps every derivative an ordinary partial one; LaTeX shows rates and accelerati
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from sympy import Expr, Rational, Symbol
 
+from pendcore import Scene
 from pendcore.derive import writing
 from pendcore.derive.writing import (
     ACCELERATION,
@@ -22,9 +23,6 @@ from pendcore.derive.writing import (
     RATE,
     UNKNOWN,
 )
-
-if TYPE_CHECKING:
-    from pendcore import Scene
 
 DOTTED = {"": "{}", "d": r"\dot{{{}}}", "dd": r"\ddot{{{}}}"}
 """How LaTeX writes what the name of a symbol says by d and dd."""

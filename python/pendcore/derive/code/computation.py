@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import sympy
 from sympy import Dummy, Expr, Symbol, cos, numbered_symbols, sin
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.motion import Assignments, needed
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 
 class Computation(NamedTuple):
@@ -37,7 +35,7 @@ class Computation(NamedTuple):
         return [*(value for _, value in self.assignments), *self.results]
 
 
-def computations(derivation: Derivation) -> dict[str, Computation]:
+def computations(derivation: Algebra) -> dict[str, Computation]:
     """Return what a file computes, of t, q, qd, qdd and the parameters.
 
     ``accelerations`` (n,), rad/s^2; ``reactions`` F_01x, F_01y, F_12x, ... (2n,), N; ``energy``,
@@ -54,7 +52,7 @@ def computations(derivation: Derivation) -> dict[str, Computation]:
     }
 
 
-def powers_by_name(derivation: Derivation) -> dict[str, Any]:
+def powers_by_name(derivation: Algebra) -> dict[str, Any]:
     """Return the effects that bring in or take energy, by kind and place: ``viscous_joint_1``."""
     named: dict[str, Any] = {}
     for effect in derivation.energy.powers_by_definitions:

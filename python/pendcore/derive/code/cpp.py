@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sympy import Expr, cos, cxxcode, sin
 from sympy.printing.cxx import CXX17CodePrinter
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.computation import Computation, computations, powers_by_name
 from pendcore.derive.code.layout import (
     assigned,
@@ -18,9 +19,6 @@ from pendcore.derive.code.layout import (
     origin,
     wrapped,
 )
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 KEYWORDS = {*CXX17CodePrinter.reserved_words, "catch", "register"}  # SymPy forgets these two
 
@@ -133,7 +131,7 @@ def write(expression: Expr) -> str:
     return str(cxxcode(expression, standard="C++17", user_functions=PRINTED_AS))
 
 
-def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendulum") -> str:
+def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum") -> str:
     """Return the text of a C++17 header that needs the standard library alone.
 
     Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
@@ -170,7 +168,7 @@ def _powers(powers: dict[str, Any]) -> str:
     return POWERS.format(members="\n".join(members), total="\n".join(total))
 
 
-def _function(derivation: Derivation, name: str, computation: Computation) -> str:
+def _function(derivation: Algebra, name: str, computation: Computation) -> str:
     """Write a member function of t, q, qd that returns the computation's results in braces."""
     s, needs = derivation.symbols, computation.needs
     result, documentation = FUNCTIONS[name]
@@ -195,7 +193,7 @@ def _function(derivation: Derivation, name: str, computation: Computation) -> st
     )  # fmt: skip
 
 
-def _statements(derivation: Derivation, computation: Computation) -> Iterator[str]:
+def _statements(derivation: Algebra, computation: Computation) -> Iterator[str]:
     s, needs = derivation.symbols, computation.needs
     if needs & {*s.qdd}:
         yield "const Angles qdd = accelerations(t, q, qd);"

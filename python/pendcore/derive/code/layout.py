@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from textwrap import wrap
-from typing import TYPE_CHECKING
 
 import sympy
 from sympy import Expr
 
 import pendcore
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.computation import Computation
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 COLUMNS = 100
 Write = Callable[[Expr], str]
 """One of SymPy's printers of code."""
 
 
-def origin(derivation: Derivation, mark: str = "") -> str:
+def origin(derivation: Algebra, mark: str = "") -> str:
     """Return the lines that say what wrote a file, from which scene, and in which convention."""
     scene = "\n".join(indented(repr(derivation.scene)))
     text = f"""\
@@ -57,7 +54,7 @@ def wrapped(statement: str, indent: str = "", more: str = "") -> list[str]:
 
 
 def assigned(
-    derivation: Derivation, computation: Computation, write: Write, statement: str, remark: str
+    derivation: Algebra, computation: Computation, write: Write, statement: str, remark: str
 ) -> Iterator[str]:
     """Yield the assignments of a computation as statements, with what the laws' symbols mean."""
     meanings = {known.symbol: known.meaning for known in derivation.equations.definitions}
@@ -67,7 +64,7 @@ def assigned(
         yield statement.format(write(symbol), write(value))
 
 
-def constants(derivation: Derivation, statement: str, remark: str) -> str:
+def constants(derivation: Algebra, statement: str, remark: str) -> str:
     """Return the scene's numbers as lines, with their meanings behind them, or above."""
     rows = []
     for symbol, value, unit, meaning in derivation.symbols.parameters:
@@ -85,7 +82,7 @@ def constants(derivation: Derivation, statement: str, remark: str) -> str:
     return "\n".join(lines)
 
 
-def chain_in_words(derivation: Derivation) -> str:
+def chain_in_words(derivation: Algebra) -> str:
     """Return what is simulated, in words."""
     kinds = {1: "a pendulum", 2: "a double pendulum", 3: "a triple pendulum"}
     return kinds.get(derivation.n, f"a chain of {derivation.n} links")

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sympy import Expr, Float, Rational, Symbol, octave_code
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.computation import computations
 from pendcore.derive.code.layout import assigned, chain_in_words, constants, origin, wrapped
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 KEYWORDS = {
     *("break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "endfor"),
@@ -49,7 +45,7 @@ COMMENT = """\
 """
 
 
-def function_file(derivation: Derivation, name: str = "RR") -> str:
+def function_file(derivation: Algebra, name: str = "RR") -> str:
     """Return the text of a function file for ``ode45``, such as the textbook's RR.m.
 
     The scene's numbers stand at its top, by name, and what expressions share is computed once. The
@@ -66,7 +62,7 @@ def function_file(derivation: Derivation, name: str = "RR") -> str:
     return _file(derivation, name, [*map(write, computation.results)], "\n".join([*lines, ""]))
 
 
-def written_out(derivation: Derivation, name: str = "RR") -> str:
+def written_out(derivation: Algebra, name: str = "RR") -> str:
     """Return a function file as the textbook's program writes it: with numbers, nothing shared.
 
     The expressions are those of `inline_function`, so that the two can be compared.
@@ -74,7 +70,7 @@ def written_out(derivation: Derivation, name: str = "RR") -> str:
     return _file(derivation, name, _with_numbers(derivation))
 
 
-def inline_function(derivation: Derivation, name: str = "g") -> str:
+def inline_function(derivation: Algebra, name: str = "g") -> str:
     """Return the statements that make the textbook's inline function, called `g` as there.
 
     An inline function is one expression: the scene's numbers are put in, and nothing is shared.
@@ -94,7 +90,7 @@ def inline_function(derivation: Derivation, name: str = "g") -> str:
     )
 
 
-def _file(derivation: Derivation, name: str, accelerations: list[str], body: str = "") -> str:
+def _file(derivation: Algebra, name: str, accelerations: list[str], body: str = "") -> str:
     start = " ".join(["pi/4 0", *["pi/3 0"] * (derivation.n - 1)])
     results = []
     for i, value in enumerate(accelerations):
@@ -106,7 +102,7 @@ def _file(derivation: Derivation, name: str, accelerations: list[str], body: str
     )  # fmt: skip
 
 
-def _words(derivation: Derivation, name: str) -> dict[str, str]:
+def _words(derivation: Algebra, name: str) -> dict[str, str]:
     """Return what every template has."""
     if not name.isidentifier() or not name.isascii() or name.startswith("_") or name in KEYWORDS:
         raise ValueError(f"name = {name!r}: must be a name that Octave allows, such as 'RR'")
@@ -115,14 +111,14 @@ def _words(derivation: Derivation, name: str) -> dict[str, str]:
     return {"name": name, "chain": chain_in_words(derivation), "comment": comment}
 
 
-def _state(derivation: Derivation) -> dict[Symbol, Symbol]:
+def _state(derivation: Algebra) -> dict[Symbol, Symbol]:
     """Return the state in the textbook's order: x(1) = q1, x(2) = qd1, ..."""
     s = derivation.symbols
     pairs = [symbol for pair in zip(s.q, s.qd, strict=True) for symbol in pair]
     return {symbol: Symbol(f"x({i})", real=True) for i, symbol in enumerate(pairs, start=1)}
 
 
-def _with_numbers(derivation: Derivation) -> list[str]:
+def _with_numbers(derivation: Algebra) -> list[str]:
     """The accelerations written out, in x(1), x(2), ... and numbers."""
     known = _state(derivation) | {s: _exact(value) for s, value in derivation.values.items()}
     return [str(octave_code(one.xreplace(known))) for one in derivation.accelerations]

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from sympy.printing.numpy import NumPyPrinter
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.code.computation import Computation, computations, powers_by_name
 from pendcore.derive.code.layout import assigned, chain_in_words, constants, origin, wrapped
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 MODULE = '''\
 """{chain}: right-hand side, joint reactions, energies.
@@ -62,7 +58,7 @@ DOCUMENTATION = {
 }
 
 
-def module(derivation: Derivation) -> str:
+def module(derivation: Algebra) -> str:
     """Return the text of a Python module.
 
     The scene's numbers stand at its top, by name; ``right_hand_side(t, y)`` is for SciPy's
@@ -94,7 +90,7 @@ def module(derivation: Derivation) -> str:
 
 
 def _body(
-    derivation: Derivation, computation: Computation, made: str, results: list[str]
+    derivation: Algebra, computation: Computation, made: str, results: list[str]
 ) -> list[str]:
     """Return the lines of a function of t, q, qd."""
     s, write = derivation.symbols, NumPyPrinter().doprint

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.narration.kinematics import kinematics
 from pendcore.derive.narration.newton_euler import newton_euler
 from pendcore.derive.narration.page import Page
 from pendcore.derive.narration.results import energy, equations_of_motion, first_order, solution
 from pendcore.derive.step import Step
 
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
-
 PARTS = (kinematics, newton_euler, equations_of_motion, solution, first_order, energy)
 
 
-def steps(derivation: Derivation) -> tuple[Step, ...]:
+def steps(derivation: Algebra) -> tuple[Step, ...]:
     """Return the steps of a derivation."""
     page = Page(derivation)
     for part in PARTS:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sympy import Expr, Symbol
 
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.laws import LinkLoad
 from pendcore.derive.notation import DOTTED
 from pendcore.derive.step import Equation, Formula, Step
 from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 _UPWARD = "as if $y$ pointed upward. It points downward, and the weight is positive."
 ERRATA = {
@@ -35,7 +33,7 @@ ERRATA = {
 class Page:
     """Steps as they are written, with the number of the next and the names of what is in them."""
 
-    def __init__(self, derivation: Derivation) -> None:
+    def __init__(self, derivation: Algebra) -> None:
         self.derivation = derivation
         self.n = derivation.n
         self.s = derivation.symbols

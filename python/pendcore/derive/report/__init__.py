@@ -10,20 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from pendcore import Case
 from pendcore._cases.whole_file import whole_file
 from pendcore._messages import progress as bars
+from pendcore._messages.progress import Progress
 from pendcore._messages.warning import warn
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.document import Document, Reader
 from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.contents import report, worksheet
 from pendcore.derive.report.drawing import save
-
-if TYPE_CHECKING:
-    from pendcore import Case
-    from pendcore._messages.progress import Progress
-    from pendcore.derive.derivation import Derivation
 
 
 class Report(NamedTuple):
@@ -35,7 +33,7 @@ class Report(NamedTuple):
 
 
 def write_report(
-    derivation: Derivation,
+    derivation: Algebra,
     case: Case,
     folder: Path,
     *,

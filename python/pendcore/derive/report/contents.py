@@ -10,13 +10,15 @@ from dataclasses import replace
 from math import degrees
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sympy import Expr
 
 import pendcore
+from pendcore import Case, Solution
 from pendcore.derive import document as doc
 from pendcore.derive import line_breaks, narration
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.document import Block, Document, Heading, Paragraph
 from pendcore.derive.laws.rod_drag import AT_REST
 from pendcore.derive.narration.kinematics import statements
@@ -25,10 +27,6 @@ from pendcore.derive.report import motion, numbers
 from pendcore.derive.report.figures import Figures
 from pendcore.derive.report.quantities import number, quantity, unit
 from pendcore.derive.step import Equation, Step, groups
-
-if TYPE_CHECKING:
-    from pendcore import Case, Solution
-    from pendcore.derive.derivation import Derivation
 
 BY_HAND = 22.0
 """Width in print, in em, of what fits on a line by hand."""
@@ -64,7 +62,7 @@ def filled(name: str, parts: Parts) -> list[Block]:
     return found
 
 
-def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
+def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "") -> Document:
     """Return the derivation of a case with its solution, as `motion.solved_or_refused` has it."""
     figures = Figures(derivation, case.q0)
     parts = {
@@ -79,7 +77,7 @@ def report(derivation: Derivation, case: Case, solution: Solution, refusal: str 
     return Document(_title(derivation, case), tuple(filled("report", parts)))
 
 
-def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Document:
+def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
     """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
     figures = Figures(derivation, case.q0)
     balance = "how well does your solution keep it?"
@@ -99,13 +97,13 @@ def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Documen
     return Document(title, tuple(filled("worksheet", parts)))
 
 
-def _title(derivation: Derivation, case: Case) -> str:
+def _title(derivation: Algebra, case: Case) -> str:
     name = case.name or NAMES.get(derivation.n, f"chain of {derivation.n} links")
     return name[:1].upper() + name[1:]
 
 
 def _problem(
-    derivation: Derivation, case: Case, figures: Figures, *, by_hand: bool = False
+    derivation: Algebra, case: Case, figures: Figures, *, by_hand: bool = False
 ) -> list[Block]:
     """Return what is given, and Fig. 1; by hand without what only avoids 0/0."""
     page, s, write = Page(derivation), derivation.symbols, derivation.symbols.latex
@@ -134,7 +132,7 @@ def _problem(
     })  # fmt: skip
 
 
-def _steps(derivation: Derivation, figures: Figures, *, blanks: bool = False) -> list[Block]:
+def _steps(derivation: Algebra, figures: Figures, *, blanks: bool = False) -> list[Block]:
     """Return the derivation; the free bodies come before the first of their equations."""
     names, found, drawn = _names(derivation), list[Block](), False
     for step in narration.steps(derivation):
@@ -149,7 +147,7 @@ def _steps(derivation: Derivation, figures: Figures, *, blanks: bool = False) ->
     return found
 
 
-def _value(equation: Equation, derivation: Derivation) -> str:
+def _value(equation: Equation, derivation: Algebra) -> str:
     """Return the number of a moment of inertia that is given by the parameters alone."""
     right, values = equation.rhs, derivation.values
     if not isinstance(right, Expr) or not str(equation.lhs).startswith(("I_", "M")):
@@ -176,7 +174,7 @@ def _blanks(step: Step, names: dict[Any, Any]) -> Iterator[Block]:
             yield doc.Blank(latex, tag if equation is equations[-1] else None, lines)
 
 
-def _names(derivation: Derivation) -> dict[Any, Any]:
+def _names(derivation: Algebra) -> dict[Any, Any]:
     """Return what stands on a worksheet for each left side that would give something away.
 
     In the solution, left sides are ``m2 L2^2/12 qdd2``, say, and m2 times the acceleration of C_2

@@ -9,21 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
+from pendcore.derive.document import Drawing
 from pendcore.derive.report.labels import Label, place
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from pendcore.derive.document import Drawing
-
-    Floats = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"

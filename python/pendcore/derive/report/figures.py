@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pendcore import Solution
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.document import Drawing
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import drawing
+from pendcore.derive.report.drawing import Floats
 from pendcore.derive.report.free_bodies import free_bodies
 from pendcore.derive.report.mechanism import mechanism
 from pendcore.derive.report.quantities import number
@@ -18,10 +21,6 @@ from pendcore.derive.report.quantities import number
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from pendcore import Solution
-    from pendcore.derive.derivation import Derivation
-    from pendcore.derive.report.drawing import Floats
 
 MOST_TICKS = 7
 """The largest number of ticks on an axis that is drawn into by hand."""
@@ -31,7 +30,7 @@ OF_LINKS = "The angles of the links over time."
 class Figures:
     """Draws the figures of a report, of a chain at the angles ``q``, rad, and numbers them."""
 
-    def __init__(self, derivation: Derivation, q: Sequence[float]) -> None:
+    def __init__(self, derivation: Algebra, q: Sequence[float]) -> None:
         self.derivation = derivation
         self.scene = derivation.scene
         self.q = list(q)

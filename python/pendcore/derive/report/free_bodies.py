@@ -11,13 +11,11 @@ from sympy import Expr
 from pendcore.derive.chain import Vector
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import drawing
-from pendcore.derive.report.drawing import Sketch, direction, name
+from pendcore.derive.report.drawing import Floats, Sketch, direction, name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from pendcore.derive.report.drawing import Floats
 
 A_ROW = 3
 """The largest number of bodies side by side."""

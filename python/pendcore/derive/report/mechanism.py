@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pendcore import Scene
 from pendcore.derive.report import drawing
-from pendcore.derive.report.drawing import Sketch, direction, name
+from pendcore.derive.report.drawing import Floats, Sketch, direction, name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from pendcore import Scene
-    from pendcore.derive.report.drawing import Floats
 
 COUPLES = {"viscous_joint", "torsional_spring", "motor"}
 """Kinds of effects that act by a couple in their joint."""

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from inspect import signature
 from math import floor, isfinite, log10
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from pendcore import AccuracyError, Case, Solution, simulate
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.document import Paragraph, Table
 from pendcore.derive.report.figures import Figures
 from pendcore.derive.report.quantities import Scales, number, quantity
-
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
 
 POINTS = 1201
 """The number of times at which curves are drawn."""
@@ -88,7 +86,7 @@ def takes_time(solution: Solution) -> bool:
 
 
 def numerical_solution(
-    derivation: Derivation, solution: Solution, figures: Figures, refusal: str = ""
+    derivation: Algebra, solution: Solution, figures: Figures, refusal: str = ""
 ) -> dict[str, Any]:
     """Return how the equations were integrated, and with what result."""
     complaints, moves = [], takes_time(solution)
@@ -132,7 +130,7 @@ def how(solution: Solution) -> str:
     return f"{words}, {settings}: {counts}"
 
 
-def _table(derivation: Derivation, solution: Solution) -> Table:
+def _table(derivation: Algebra, solution: Solution) -> Table:
     s, write = derivation.symbols, derivation.symbols.latex
     with_rates = derivation.n <= MOST_WITH_RATES
     head = ["$t$ (s)", *(f"${write(x)}$ (deg)" for x in s.q)]
@@ -165,7 +163,7 @@ def _digits(solution: Solution) -> int:
     return 4 if share == 0 else min(max(floor(-log10(share)), 2), 4)
 
 
-def _largest(derivation: Derivation, solution: Solution) -> str:
+def _largest(derivation: Algebra, solution: Solution) -> str:
     digits = _digits(solution)
     sentences = []
     for one in solution.largest_reactions():
@@ -177,7 +175,7 @@ def _largest(derivation: Derivation, solution: Solution) -> str:
     return f"The largest reactions are {', '.join(sentences)}."
 
 
-def energy_check(derivation: Derivation, solution: Solution, figures: Figures) -> dict[str, Any]:
+def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> dict[str, Any]:
     """Return the energies in symbols, and how well the run kept them."""
     energy, moves = solution.energy(), takes_time(solution)
     rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if energy.ledger else "")

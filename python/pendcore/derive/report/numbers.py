@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy
 from sympy import Expr, Float, Symbol
 
-from pendcore import Case, simulate
+from pendcore import Case, Solution, simulate
+from pendcore.derive.algebra import Algebra
 from pendcore.derive.document import Displayed, Table
 from pendcore.derive.line_breaks import aligned, rows
 from pendcore.derive.motion import needed
+from pendcore.derive.report.drawing import Floats
 from pendcore.derive.report.quantities import DIGITS, ROUNDING, Scales, number, quantity, unit
-
-if TYPE_CHECKING:
-    from pendcore import Solution
-    from pendcore.derive.derivation import Derivation
-    from pendcore.derive.report.drawing import Floats
-
 
 OF_LOCKS = (
     "the couples of locks are unknown, and found together with the accelerations, from the "
@@ -30,7 +26,7 @@ LOCKS_IN_THE_CORE = (
 )
 
 
-def put_in(derivation: Derivation) -> dict[str, Any]:
+def put_in(derivation: Algebra) -> dict[str, Any]:
     """Return M and f with the numbers of the scene, and the laws in which they are written."""
     write, locking = derivation.symbols.latex, derivation.locking
     defined = derivation.equations.definitions
@@ -58,7 +54,7 @@ def _unit(entry: Symbol) -> str:
     return "kg m^2" if entry.name.startswith("M") else "N m"
 
 
-def _numeric(derivation: Derivation, symbol: Symbol, value: Expr, name: str) -> list[str]:
+def _numeric(derivation: Algebra, symbol: Symbol, value: Expr, name: str) -> list[str]:
     """Return rows of a symbol's value in numbers, with the unit behind it."""
     write = derivation.symbols.latex
     put_in = sympy.sympify(value.xreplace(derivation.values))
@@ -82,7 +78,7 @@ def _short(value: Float) -> Expr:
 class Start:
     """The state at the start, and what the derivation and the compiled core make of it."""
 
-    def __init__(self, derivation: Derivation, case: Case) -> None:
+    def __init__(self, derivation: Algebra, case: Case) -> None:
         self.derivation = derivation
         self.case = case
         s = derivation.symbols
@@ -133,7 +129,7 @@ class Start:
         return {joint: float(couples[joint - 1]) for joint in joints}
 
 
-def at_the_start(derivation: Derivation, case: Case) -> dict[str, Any]:
+def at_the_start(derivation: Algebra, case: Case) -> dict[str, Any]:
     """Return the accelerations, reactions and energies at the start, beside the core's."""
     start, write, s = Start(derivation, case), derivation.symbols.latex, derivation.symbols
     table = start.rows()

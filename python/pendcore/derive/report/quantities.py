@@ -5,10 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from math import isfinite
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from pendcore.derive.derivation import Derivation
+from pendcore.derive.algebra import Algebra
 
 DIGITS = 6
 ROUNDING = 1e-12
@@ -44,7 +42,7 @@ class Scales:
     is larger.
     """
 
-    def __init__(self, derivation: Derivation, found: Iterable[tuple[str, float]] = ()) -> None:
+    def __init__(self, derivation: Algebra, found: Iterable[tuple[str, float]] = ()) -> None:
         scene, payload = derivation.scene, derivation.equations.payload
         lengths = [abs(link.length) for link in scene.links]
         mass = sum(link.mass for link in scene.links)
