@@ -79,8 +79,8 @@ def _mobility(page: Page) -> None:
     page.step(
         "Degrees of freedom",
         f"Here $n = {k}$ counts the moving links, $c_{{5}} = {k}$ the joints that leave one degree "
-        f"of freedom, and $c_{{4}} = 0$ those that leave two.{locks} The generalized coordinates "
-        f"are the angles of the links: {angles}.",
+        f"of freedom, and $c_{{4}} = 0$ those that leave two.{locks} The chain is described by the "
+        f"angles of its links: {angles}.",
         page.equation(symbol, Formula("3 n - 2 c_{5} - c_{4}")),
         page.equation(symbol, Formula(rf"3 \cdot {k} - 2 \cdot {k} - 0 = {k}")),
     )
