@@ -255,9 +255,9 @@ def test_a_long_equation_is_broken_at_its_terms_and_loses_none() -> None:
 def test_a_bracket_that_is_wider_than_a_line_is_opened() -> None:
     inside = " + ".join(rf"a_{{{k}}} \left(b_{{{k}}} - c\right)" for k in range(12))
     first, *more = line_breaks.rows("x", rf"m \left({inside}\right)^{{2}} - d")
-    assert first.startswith(r"x &= m \bigl(a_{0} \left(b_{0} - c\right)")
+    assert first.startswith(r"x &= m \bigl[a_{0} \left(b_{0} - c\right)")
     assert len(more) > 1
-    assert more[-1].endswith(r"\bigr)^{2} - d")
+    assert more[-1].endswith(r"\bigr]^{2} - d")
     for row in (first, *more):
         assert row.count(r"\left") == row.count(r"\right")
 

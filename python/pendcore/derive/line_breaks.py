@@ -16,8 +16,7 @@ _WIDTHS = {
     "+": 1.25, "-": 1.25, "=": 1.4, "/": 0.5, " ": 0.0, ",": 0.3, ".": 0.3, "(": 0.4, ")": 0.4,
     "|": 0.3, "[": 0.4, "]": 0.4, "left": 0.0, "right": 0.0, "sin": 1.4, "cos": 1.45, "quad": 1.0,
     "times": 1.3, "cdot": 0.7, "mathbf": 0.0, "text": 0.0, "dot": 0.0, "ddot": 0.0, "mathrm": 0.0,
-    "bigl": 0.0, "bigr": 0.0,
-    "Bigl": 0.0, "Bigr": 0.0, "boldsymbol": 0.0, "displaystyle": 0.0, ";": 0.28,
+    "bigl": 0.0, "bigr": 0.0, "boldsymbol": 0.0, "displaystyle": 0.0, ";": 0.28,
 }  # fmt: skip
 _TOKEN = re.compile(r"\\([A-Za-z]+|.)|([{}^_])|(.)", re.DOTALL)
 _MATRIX = re.compile(r"\\begin{vmatrix}(.*?)\\end{vmatrix}", re.DOTALL)
@@ -114,9 +113,6 @@ def _opened(term: str, room: float) -> list[str]:
         return [term]
     first, last = max(spans, key=lambda span: span[1] - span[0])
     inner = _pieces(term[first:last].strip(), room - 1.0)
-    opened, closed = (
-        (r"\Bigl[", r"\Bigr]") if r"\frac" in term[first:last] else (r"\bigl(", r"\bigr)")
-    )
-    inner[0] = term[:first].removesuffix(r"\left(") + opened + inner[0]
-    inner[-1] += closed + term[last:].removeprefix(r"\right)")
+    inner[0] = term[:first].removesuffix(r"\left(") + r"\bigl[" + inner[0]
+    inner[-1] += r"\bigr]" + term[last:].removeprefix(r"\right)")
     return inner

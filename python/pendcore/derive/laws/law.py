@@ -20,7 +20,7 @@ class NotSmooth(Exception):
 
 
 class LinkLoad(NamedTuple):
-    """A force on a link (counted from 1), N, and its moment about the link's begin, N m."""
+    """A force on a link (counted from 1), N, and its moment about where the link begins, N m."""
 
     link: int
     force: Vector

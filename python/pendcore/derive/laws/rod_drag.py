@@ -82,7 +82,7 @@ def rod_drag(effect: Any, s: Notation) -> Law:
         f"length along ${unit_vector}$ relative to {air}. It is ${write(w0)}$ where the link "
         f"begins, ${write(w1)}$ where the link ends, and linear between them. The sum of these "
         f"forces is ${write(force)} \\,{unit_vector}$, and ${write(moment)}$ is the sum of their "
-        "moments about the begin of the link."
+        "moments about the joint where the link begins."
     )
     load = LinkLoad(i, (force * normal[0], force * normal[1]), moment)
     return Law(effect, statement, definitions=definitions, load=load, power=power)
