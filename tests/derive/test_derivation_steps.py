@@ -15,7 +15,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 import sympy
-from pendcore.derive import Derivation, Equation, Formula, line_breaks
+from pendcore.derive import Derivation, Equation, Formula, line_breaks, writing
 from symbolic_scenes import SETS, derived, scene, states
 
 pytestmark = pytest.mark.unsanitized
@@ -210,6 +210,10 @@ def test_text_and_latex_are_read_back(name: str, n: int) -> None:
     for equation in scalars(derivation):
         for side in (equation.lhs, equation.rhs):
             side = sympy.sympify(side)
+            shown = writing.arranged(
+                side, derivation.symbols.rank, has_bars=True
+            )  # as LaTeX has it
+            assert sympy.expand(shown.doit() - side) == 0
             names = {symbol.name: symbol for symbol in side.free_symbols}
             if all(name.isidentifier() for name in names):
                 again = sympy.sympify(derivation.symbols.text(side), locals=names)
