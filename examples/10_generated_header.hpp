@@ -67,6 +67,7 @@ struct Chain {
     double potential;  ///< J; 0 at the height of the origin
     double total() const { return kinetic + potential; }
   };
+
   /// Power that each effect brings into the chain, W; negative where it takes energy.
   struct Powers {
     /// ViscousJoint(joint=1, damping=0.15)
@@ -102,37 +103,37 @@ struct Chain {
   Angles accelerations(double t, const Angles& q, const Angles& qd) const {
     const double q1 = q[0], q2 = q[1];
     const double qd1 = qd[0], qd2 = qd[1];
-    const double sin1 = std::sin(Omega_1*t);
+    const double sin_Omega_1_t = std::sin(Omega_1*t);
     // torque at joint 1, N m
-    const double tau1 = -b_1*qd1 + sin1*tauM_1;
+    const double tau1 = -b_1*qd1 + sin_Omega_1_t*tauM_1;
     // torque at joint 2, N m
     const double tau2 = -k_2*(-phi0_2 - q1 + q2);
-    const double e1 = square(L1);
-    const double M11 = e1*m1/3.0 + e1*m2 + e1*m_p;
+    const double e0 = square(L1);
+    const double M11 = (1.0/3.0)*e0*m1 + e0*m2 + e0*m_p;
     const double cos_q1_q2 = std::cos(q1 - q2);
-    const double e2 = L1*cos_q1_q2;
-    const double e3 = L2*m_p;
-    const double e4 = c2*m2;
-    const double M12 = e2*e3 + e2*e4;
+    const double e1 = L1*cos_q1_q2;
+    const double e2 = L2*m_p;
+    const double e3 = c2*m2;
+    const double M12 = e1*e2 + e1*e3;
     const double M22 = I_C2 + square(L2)*m_p + square(c2)*m2;
     const double cos_q1 = std::cos(q1);
-    const double e5 = L1*cos_q1*g;
+    const double e4 = L1*cos_q1*g;
     const double sin_q1_q2 = std::sin(q1 - q2);
-    const double e6 = L1*sin_q1_q2;
-    const double e7 = e6*square(qd2);
-    const double f1 = -e3*e7 - e4*e7 + e5*m1/2.0 + e5*m2 + e5*m_p + tau1 - tau2;
+    const double e5 = L1*sin_q1_q2;
+    const double e6 = e5*square(qd2);
+    const double f1 = -e2*e6 - e3*e6 + (1.0/2.0)*e4*m1 + e4*m2 + e4*m_p + tau1 - tau2;
     const double cos_q2 = std::cos(q2);
-    const double e8 = cos_q2*g;
-    const double e9 = e6*square(qd1);
-    const double f2 = e3*e8 + e3*e9 + e4*e8 + e4*e9 + tau2;
-    const double e10 = 1.0/M11;
-    const double l21 = M12*e10;
+    const double e7 = cos_q2*g;
+    const double e8 = e5*square(qd1);
+    const double f2 = e2*e7 + e2*e8 + e3*e7 + e3*e8 + tau2;
+    const double e9 = std::pow(M11, -1);
+    const double l21 = M12*e9;
     const double D2 = -M11*square(l21) + M22;
     const double h2 = -f1*l21 + f2;
     const double a2 = h2/D2;
     return Angles{{
-        -a2*l21 + e10*f1,
-        a2
+        -a2*l21 + e9*f1,
+        a2,
     }};
   }
 
@@ -143,29 +144,29 @@ struct Chain {
     const double q1 = q[0], q2 = q[1];
     const double qd1 = qd[0], qd2 = qd[1];
     const double qdd1 = qdd[0], qdd2 = qdd[1];
-    const double e1 = square(qd1);
+    const double e0 = square(qd1);
     const double cos_q1 = std::cos(q1);
-    const double e2 = cos_q1*e1;
-    const double e3 = square(qd2);
+    const double e1 = cos_q1*e0;
+    const double e2 = square(qd2);
     const double cos_q2 = std::cos(q2);
-    const double e4 = cos_q2*e3;
+    const double e3 = cos_q2*e2;
     const double sin_q1 = std::sin(q1);
-    const double e5 = qdd1*sin_q1;
-    const double e6 = L1*m2;
-    const double e7 = L1*m_p;
-    const double e8 = L2*m_p;
+    const double e4 = qdd1*sin_q1;
+    const double e5 = L1*m2;
+    const double e6 = L1*m_p;
+    const double e7 = L2*m_p;
     const double sin_q2 = std::sin(q2);
-    const double e9 = qdd2*sin_q2;
-    const double e10 = c2*m2;
-    const double e11 = e10*e4 + e10*e9 + e2*e6 + e2*e7 + e4*e8 + e5*e6 + e5*e7 + e8*e9;
-    const double e12 = L1*m1/2.0;
-    const double e13 = e1*sin_q1;
-    const double e14 = e3*sin_q2;
-    const double e15 = -L1*cos_q1*m2*qdd1 - L1*cos_q1*m_p*qdd1 - L2*cos_q2*m_p*qdd2 -
-        c2*cos_q2*m2*qdd2 + e10*e14 + e13*e6 + e13*e7 + e14*e8 + g*m2 + g*m_p;
+    const double e8 = qdd2*sin_q2;
+    const double e9 = c2*m2;
+    const double e10 = e1*e5 + e1*e6 + e3*e7 + e3*e9 + e4*e5 + e4*e6 + e7*e8 + e8*e9;
+    const double e11 = (1.0/2.0)*L1*m1;
+    const double e12 = e0*sin_q1;
+    const double e13 = e2*sin_q2;
+    const double e14 = -L1*cos_q1*m2*qdd1 - L1*cos_q1*m_p*qdd1 - L2*cos_q2*m_p*qdd2 -
+        c2*cos_q2*m2*qdd2 + e12*e5 + e12*e6 + e13*e7 + e13*e9 + g*m2 + g*m_p;
     return std::array<Force, links>{{
-        Force{-e11 - e12*e2 - e12*e5, L1*cos_q1*m1*qdd1/2.0 - e12*e13 - e15 - g*m1},
-        Force{-e11, -e15}
+        Force{-e1*e11 - e10 - e11*e4, (1.0/2.0)*L1*cos_q1*m1*qdd1 - e11*e12 - e14 - g*m1},
+        Force{-e10, -e14},
     }};
   }
 
@@ -173,36 +174,36 @@ struct Chain {
   Energy energy(double /*t*/, const Angles& q, const Angles& qd) const {
     const double q1 = q[0], q2 = q[1];
     const double qd1 = qd[0], qd2 = qd[1];
-    const double e1 = square(qd2)/2.0;
+    const double e0 = (1.0/2.0)*square(qd2);
     const double cos_q1_q2 = std::cos(q1 - q2);
-    const double e2 = L1*cos_q1_q2*qd1*qd2;
-    const double e3 = square(L1)*square(qd1);
-    const double e4 = e3/2.0;
-    const double e5 = g*m2;
+    const double e1 = L1*cos_q1_q2*qd1*qd2;
+    const double e2 = square(L1)*square(qd1);
+    const double e3 = (1.0/2.0)*e2;
+    const double e4 = g*m2;
     const double sin_q1 = std::sin(q1);
-    const double e6 = L1*sin_q1;
-    const double e7 = g*m_p;
+    const double e5 = L1*sin_q1;
+    const double e6 = g*m_p;
     const double sin_q2 = std::sin(q2);
     return Energy{
-        I_C2*e1 + square(L2)*e1*m_p + L2*e2*m_p + square(c2)*e1*m2 + c2*e2*m2 + e3*m1/6.0 + e4*m2 +
-            e4*m_p,
-        -L2*e7*sin_q2 - c2*e5*sin_q2 - e5*e6 - e6*e7 - e6*g*m1/2.0 + k_2*square(-phi0_2 - q1 +
-            q2)/2.0
+        I_C2*e0 + square(L2)*e0*m_p + L2*e1*m_p + square(c2)*e0*m2 + c2*e1*m2 + (1.0/6.0)*e2*m1 +
+            e3*m2 + e3*m_p,
+        -L2*e6*sin_q2 - c2*e4*sin_q2 - e4*e5 - e5*e6 - 1.0/2.0*e5*g*m1 +
+            (1.0/2.0)*k_2*square(-phi0_2 - q1 + q2),
     };
   }
 
   /// Power of each effect.
   Powers powers(double t, const Angles& /*q*/, const Angles& qd) const {
     const double qd1 = qd[0];
-    const double sin1 = std::sin(Omega_1*t);
+    const double sin_Omega_1_t = std::sin(Omega_1*t);
     return Powers{
         -b_1*square(qd1),
-        qd1*sin1*tauM_1
+        qd1*sin_Omega_1_t*tauM_1,
     };
   }
-
  private:
   static double square(double x) { return x * x; }
+  static double cube(double x) { return x * x * x; }
 };
 
 }  // namespace pendulum

@@ -39,14 +39,11 @@ def test_a_form_is_printed_or_written(form: str, capsys: pytest.CaptureFixture[s
     assert Path("a/RR.m").read_text(encoding="utf-8") == FORMS[form]
 
 
-def test_the_steps_are_what_is_printed_unless_asked_otherwise(
+def test_steps_are_printed_by_default_and_a_case_of_one_s_own_is_derived(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     assert main(["derive"]) == 0
     assert capsys.readouterr().out == FORMS["text"]
-
-
-def test_a_case_of_one_s_own_is_derived(capsys: pytest.CaptureFixture[str]) -> None:
     swing = pc.Case(scene=pc.Scene(links=[pc.Link(mass=2.0, length=1.5)]), q0=0.1, t_span=(0, 1))
     Path("swing.toml").write_text(swing.to_toml())
     assert main(["derive", "swing.toml", "--to", "octave"]) == 0
@@ -99,33 +96,41 @@ def test_a_report_is_written_into_a_folder(
     assert {path.suffix for path in Path("sheets").iterdir()} == {".md", ".png"}
 
 
-def test_a_report_of_a_run_that_fails_is_written_and_exits_with_1(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PATH", "")
-    Path("short.toml").write_text(pc.Case.textbook().to_toml() + "max_steps = 3\n")
-    assert main(["derive", "short.toml", "--to", "report", "-o", "sheets"]) == 1
-    assert "The run is not complete" in Path("sheets/report.md").read_text()
-    assert "warning: the run is not complete" in capsys.readouterr().err
+CHAOS = pc.Case(scene=pc.Scene(links=[pc.Link(mass=1, length=1)] * 2), q0=(-2, -1),
+                t_span=(0, 60), options={"error": 1e-6})  # fmt: skip
 
 
-def test_a_report_is_written_of_the_run_whose_error_is_not_reached(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize(
+    ("case", "warning", "told", "runs"),
+    [
+        (
+            pc.Case.textbook().to_toml() + "max_steps = 3\n",
+            "the run is not complete",
+            "**The run is not complete",
+            2,  # the second keeps the times until its end
+        ),
+        (
+            CHAOS.to_toml(),
+            "error = 1e-06: not reached: ",
+            "**The run is not shown to be as exact as asked for: error = 1e-06: not reached: ",
+            1,
+        ),
+    ],
+    ids=["fails", "chaos"],
+)
+def test_a_report_of_a_run_that_is_not_as_asked_is_written_and_exits_with_1(
+    case: str, warning: str, told: str, runs: int,
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
     monkeypatch.setenv("PATH", "")
-    rods = pc.Scene(links=[pc.Link(mass=1, length=1)] * 2)
-    chaos = pc.Case(scene=rods, q0=(-2, -1), t_span=(0, 60), options={"error": 1e-6})
-    Path("chaos.toml").write_text(chaos.to_toml())
-    runs = list[pc.Case]()
+    Path("case.toml").write_text(case)
+    made = list[pc.Case]()
     monkeypatch.setattr(pc.Case, "simulate", lambda case, run=pc.Case.simulate, **how: (
-        runs.append(case), run(case, **how))[1])  # fmt: skip
-    assert main(["derive", "chaos.toml", "--to", "report", "-o", "o"]) == 1
-    assert len(runs) == 1
-    assert "warning: error = 1e-06: not reached: " in capsys.readouterr().err
-    told = Path("o/report.md").read_text()
-    assert (
-        "**The run is not shown to be as exact as asked for: error = 1e-06: not reached: " in told
-    )
+        made.append(case), run(case, **how))[1])  # fmt: skip
+    assert main(["derive", "case.toml", "--to", "report", "-o", "o"]) == 1
+    assert len(made) == runs
+    assert f"warning: {warning}" in capsys.readouterr().err
+    assert told in Path("o/report.md").read_text()
     assert Path("o/angles.png").exists()
 
 

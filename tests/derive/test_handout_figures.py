@@ -12,8 +12,8 @@ from handed_out_cases import CASES
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
 from pendcore.derive import Derivation
-from pendcore.derive.report import curves, drawing, mechanism
-from pendcore.derive.report.figures import Figures
+from pendcore.derive.report import drawing, mechanism
+from pendcore.derive.report.figures import Figures, whole_ticks
 
 pytestmark = pytest.mark.unsanitized
 
@@ -98,7 +98,7 @@ def test_names_in_figures_lie_on_nothing(seed: int) -> None:
 
 def test_empty_axes_have_few_ticks_at_whole_angles() -> None:
     for turns in ([0.1, 80.0], [-200.0, 300.0], [-30.0, 100.0], [40.0, 5000.0], [-1e6, 0.0]):
-        low, high, step = curves.whole_ticks(np.array(turns))
+        low, high, step = whole_ticks(np.array(turns))
         assert low <= min(turns)
         assert high >= max(turns)
         assert step % 30 == 0 or step % 45 == 0

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-EXTRAS = ["films", "page", "cost", "cli"]
+EXTRAS = ["films", "page", "cost", "derive", "cli"]
 PROGRAM = """
 import importlib, pkgutil, sys
 import pendcore

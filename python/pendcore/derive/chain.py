@@ -14,7 +14,7 @@ from itertools import pairwise
 from sympy import Expr, Integer, Symbol, cos, diff, expand, sin
 from sympy.simplify.fu import TR8
 
-from pendcore.derive.notation import Notation
+from pendcore.derive.notation import DOTTED, Notation
 from pendcore.derive.writing import ACCELERATION, ANGLE, RATE
 
 Vector = tuple[Expr, Expr]
@@ -36,6 +36,11 @@ def minus(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1]
 
 
+def across(angle: Expr) -> Vector:
+    """Return the unit vector across a link, n = du/dq."""
+    return -sin(angle), cos(angle)
+
+
 def of_differences(expression: Expr) -> Expr:
     """Write products of sines and cosines as sines and cosines of sums: a normal form."""
     return expand(TR8(expand(expression)))
@@ -44,91 +49,54 @@ def of_differences(expression: Expr) -> Expr:
 class Chain:
     """Where the links are and how they move, as expressions.
 
-    Parameters
-    ----------
-    notation : Notation
-        The symbols.
-    path : (sympy.Expr, sympy.Expr)
-        Position of the pivot, a function of time alone, m.
-
-    Attributes
-    ----------
-    pivot : (sympy.Expr, sympy.Expr)
-        The pivot's position as symbols, ``x_A`` and ``y_A``; 0 along an axis on which the pivot
-        does not move.
-    path : dict
-        These symbols and their rates, ``xd_A`` to ``ydd_A``, each with its function of time.
+    ``path`` is the position of the pivot, a function of time alone, m. The pivot itself is given by
+    symbols, ``x_A`` and ``y_A``, or 0 along an axis on which it does not move; the attribute
+    ``path`` holds these symbols and those of their rates, each with its function of time.
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:
-        self.notation = notation
+        self.notation = s = notation
         self.path: dict[Symbol, Expr] = {}
-        self._rates: dict[Symbol, Expr] = {}
-        x, y = (self._along(axis, law) for axis, law in zip("xy", path, strict=True))
-        self.pivot: Vector = (x, y)
+        self._rates: dict[Symbol, Expr] = {s.t: Integer(1)}
+        for rows in ((s.q, s.qd), (s.qd, s.qdd)):
+            self._rates |= dict(zip(*rows, strict=True))
+        self.pivot: Vector = self._along("x", path[0]), self._along("y", path[1])
 
     def _along(self, axis: str, law: Expr) -> Expr:
         if law == 0:
             return law
-        dots = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}
         symbols = [
-            self.notation.symbol(
-                f"{axis}{'d' * k}_A", f"{shown}_{{A}}", (ANGLE, RATE, ACCELERATION)[k]
-            )
-            for k, shown in dots.items()
+            self.notation.symbol(f"{axis}{dots}_A", f"{shown.format(axis)}_{{A}}", kind)
+            for (dots, shown), kind in zip(DOTTED.items(), (ANGLE, RATE, ACCELERATION), strict=True)
         ]
-        for k, symbol in enumerate(symbols):
-            self.path[symbol] = law.diff(self.notation.t, k)
+        self.path |= {symbol: law.diff(self.notation.t, k) for k, symbol in enumerate(symbols)}
         self._rates |= dict(pairwise(symbols))
         return symbols[0]
 
     def rate(self, expression: Expr) -> Expr:
         """Differentiate with respect to time, of which angles, rates and pivot are functions."""
-        s = self.notation
-        moving = {s.t: Integer(1), **self._rates}
-        moving |= {**dict(zip(s.q, s.qd, strict=True)), **dict(zip(s.qd, s.qdd, strict=True))}
-        return sum((diff(expression, x) * rate for x, rate in moving.items()), Integer(0))
+        return sum((diff(expression, x) * rate for x, rate in self._rates.items()), Integer(0))
 
     def velocity(self, point: Vector) -> Vector:
         """Return the velocity of a point, m/s."""
         return expand(self.rate(point[0])), expand(self.rate(point[1]))
-
-    def acceleration(self, point: Vector) -> Vector:
-        """Return the acceleration of a point, m/s^2."""
-        return self.velocity(self.velocity(point))
 
     @property
     def pivot_is_fixed(self) -> bool:
         """Whether the pivot stays at the origin."""
         return self.pivot == (0, 0)
 
-    def along(self, link: int) -> Vector:
-        """Return the unit vector along a link, u_i; links count from 1."""
-        angle = self.notation.q[link - 1]
-        return cos(angle), sin(angle)
-
-    def across(self, link: int) -> Vector:
-        """Return the unit vector across a link, n_i = du_i/dq_i."""
-        angle = self.notation.q[link - 1]
-        return -sin(angle), cos(angle)
-
-    def joint_angle(self, joint: int) -> Expr:
-        """Return the angle of a joint, phi_j = q_j - q_(j-1), rad."""
-        return self._relative(self.notation.q, joint)
-
-    def joint_rate(self, joint: int) -> Expr:
-        """Return the rate of a joint, w_j = qd_j - qd_(j-1), rad/s."""
-        return self._relative(self.notation.qd, joint)
-
-    def joint_acceleration(self, joint: int) -> Expr:
-        """Return the acceleration of a joint, rad/s^2."""
-        return self._relative(self.notation.qdd, joint)
+    def joint(self, joint: int) -> tuple[Expr, Expr, Expr]:
+        """Return phi_j = q_j - q_(j-1) of a joint, rad, its rate, and its acceleration."""
+        s, i = self.notation, joint - 1
+        phi, w, a = (x[i] - (x[i - 1] if i else 0) for x in (s.q, s.qd, s.qdd))
+        return phi, w, a
 
     @cached_property
     def joints(self) -> tuple[Vector, ...]:
         """P_0, ..., P_n: pivot, joints and tip, m."""
         points = [self.pivot]
-        for i, length in enumerate(self.notation.lengths, start=1):
+        for i, length in enumerate(self.notation.lengths):
             points.append(self._beyond(points[-1], i, length))
         return tuple(points)
 
@@ -136,8 +104,8 @@ class Chain:
     def centers(self) -> tuple[Vector, ...]:
         """C_1, ..., C_n: mass centres of the links, m."""
         return tuple(
-            self._beyond(self.joints[i - 1], i, distance)
-            for i, distance in enumerate(self.notation.centers, start=1)
+            self._beyond(self.joints[i], i, distance)
+            for i, distance in enumerate(self.notation.centers)
         )
 
     @cached_property
@@ -160,10 +128,6 @@ class Chain:
         """The acceleration of P_n, where a payload is, m/s^2."""
         return self.velocity(self.joint_velocities[-1])
 
-    def _beyond(self, point: Vector, link: int, distance: Expr) -> Vector:
-        along = self.along(link)
-        return point[0] + distance * along[0], point[1] + distance * along[1]
-
-    @staticmethod
-    def _relative(absolute: tuple[Symbol, ...], joint: int) -> Expr:
-        return absolute[joint - 1] - (absolute[joint - 2] if joint > 1 else 0)
+    def _beyond(self, point: Vector, i: int, distance: Expr) -> Vector:
+        angle = self.notation.q[i]
+        return point[0] + distance * cos(angle), point[1] + distance * sin(angle)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from functools import cached_property
 from pathlib import Path
 
-from pendcore._cases.case import Case
-from pendcore._messages.progress import Progress
-from pendcore._scene.scene import Scene
+from pendcore import Case, Scene
 from pendcore.derive import narration
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.code import cpp, octave, python
 from pendcore.derive.report import write_report
 from pendcore.derive.step import Step
+from pendcore.messages import Progress
 
 
 class Derivation(Algebra):
@@ -41,10 +40,6 @@ class Derivation(Algebra):
         Kinematics.
     equations : NewtonEuler
         Newton's and Euler's equations, with the reactions as unknowns.
-    motion : Motion
-        The equations that are left when the reactions are eliminated.
-    solution : Solution
-        The accelerations.
     energy : Energy
         Energies, powers, and their balance.
     """
@@ -101,8 +96,7 @@ class Derivation(Algebra):
             raise ValueError("case: has another scene than the derivation: derive case.scene")
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        made = write_report(self, case, folder, with_worksheet=worksheet, progress=progress)
-        return made.files
+        return write_report(self, case, folder, with_worksheet=worksheet, progress=progress).files
 
     def to_octave(self, name: str = "RR") -> str:
         """Return a function file for MATLAB and Octave, like the textbook's RR.m."""

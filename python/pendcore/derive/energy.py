@@ -13,48 +13,43 @@ from typing import Any
 from sympy import Expr, Integer, Symbol, expand
 
 from pendcore.derive.chain import Vector, dot, of_differences
-from pendcore.derive.solution import Solution
+from pendcore.derive.motion import Motion
 
 
 class Energy:
-    """Kinetic and potential energy of a chain, J, and the powers that effects bring into it, W.
+    """Kinetic and potential energy of a chain, J, and the powers that effects bring into it, W."""
 
-    Parameters
-    ----------
-    solution : Solution
-        The accelerations.
-    """
-
-    def __init__(self, solution: Solution) -> None:
-        self.solution = solution
-        self.motion = motion = solution.motion
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
         self.equations = motion.equations
         self.chain = motion.equations.chain
-        self.notation = motion.notation
+        self.symbols = s = motion.symbols
+        bodies = [*zip(s.masses, s.inertias, s.qd, strict=True)]
+        places, velocities = [*self.chain.centers], [*self.chain.center_velocities]
+        if (payload := self.equations.payload) is not None:
+            bodies.append((payload.mass, payload.inertia, s.qd[-1]))
+            places.append(self.chain.joints[-1])
+            velocities.append(self.chain.joint_velocities[-1])
+        self._bodies = [*zip(bodies, places, velocities, strict=True)]
 
     @cached_property
     def kinetic(self) -> Expr:
         """The kinetic energy of links, payload and rotors, J."""
-        s, found = self.notation, Integer(0)
-        for i, v in enumerate(self.chain.center_velocities):
-            found += s.masses[i] * dot(v, v) / 2 + s.inertias[i] * s.qd[i] ** 2 / 2
-        if self.equations.payload is not None:
-            mass, inertia = self.equations.payload.mass, self.equations.payload.inertia
-            v = self.chain.joint_velocities[-1]
-            found += mass * dot(v, v) / 2 + inertia * s.qd[-1] ** 2 / 2
+        found = Integer(0)
+        for (mass, inertia, rate), _, v in self._bodies:
+            found += mass * dot(v, v) / 2 + inertia * rate**2 / 2
         for joint, armature in enumerate(self.equations.armatures, start=1):
-            found += armature * self.chain.joint_rate(joint) ** 2 / 2
+            found += armature * self.chain.joint(joint)[1] ** 2 / 2
         return of_differences(found)
 
     @cached_property
     def potential(self) -> Expr:
         """The potential energy of weights and springs, J; zero at the height of the origin."""
-        s = self.notation
-        heights = [m * c[1] for m, c in zip(s.masses, self.chain.centers, strict=True)]
-        if self.equations.payload is not None:
-            heights.append(self.equations.payload.mass * self.chain.joints[-1][1])
-        stored = [law.potential_energy(self.chain) for law in self.equations.laws]
-        return expand(-s.gravity * sum(heights)) + sum(stored, Integer(0))
+        found = expand(-self.symbols.gravity * sum(m * y for (m, *_), (_, y), _ in self._bodies))
+        for law in self.equations.laws:
+            if law.stored is not None:
+                found += law.stored(self.chain.joint(law.effect.joint)[0])
+        return found
 
     @cached_property
     def powers_by_definitions(self) -> dict[Any, Expr]:
@@ -65,9 +60,14 @@ class Energy:
         """Return the power of each effect, W, with the ground's force on link 1 as it is given."""
         found: dict[Any, Expr] = {}
         for law in self.equations.laws:
-            power = law.power(self.chain, ground_force)
-            if power is not None:
-                found[law.effect] = found.get(law.effect, Integer(0)) + power
+            if law.power is not None:
+                power = law.power(self.chain, ground_force)
+            elif law.couple is not None and law.stored is None:
+                phi, w, _ = self.chain.joint(law.effect.joint)
+                power = law.couple(phi, w) * w
+            else:
+                continue
+            found[law.effect] = found.get(law.effect, Integer(0)) + power
         return found
 
     @cached_property
@@ -85,23 +85,16 @@ class Energy:
         The second step adds qd . e at the solved accelerations: that is 0 if they solve the
         equations.
         """
-        s, motion = self.notation, self.motion
-        torques = {d.symbol: d.value for d in self.equations.torques}
-        locked = self._locked_rates()
-        total = self.chain.rate(self.kinetic + self.potential)
-        residual = total - sum(self.powers_by_definitions.values(), Integer(0))
-        unbalanced = Integer(0)
+        s, motion = self.symbols, self.motion
+        torques = {d.symbol: d.value for d in self.equations.torques.values()}
+        residual = self.chain.rate(self.kinetic + self.potential)
+        residual -= sum(self.powers_by_definitions.values(), Integer(0))
         for i, rate in enumerate(s.qd):
             line = sum(motion.mass_matrix[i, k] * a for k, a in enumerate(s.qdd))
-            unbalanced += rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
-        left = (residual - unbalanced).xreplace(torques).subs(locked)
-        left = of_differences(left.xreplace(self.chain.path))
-        return left + self.solution.power_of_the_error()
-
-    def _locked_rates(self) -> dict[Symbol, Expr]:
-        """Return, for each link beyond a lock, its rate: that of the link before the lock."""
-        s, found = self.notation, dict[Symbol, Expr]()
+            residual -= rate * (line - motion.forcing_by_definitions[i].xreplace(torques))
+        rates = dict[Symbol, Expr]()  # of links beyond a lock: those of the links before it
         for joint in self.equations.locked:
             before = s.qd[joint - 2] if joint > 1 else Integer(0)
-            found[s.qd[joint - 1]] = found.get(before, before)
-        return found
+            rates[s.qd[joint - 1]] = rates.get(before, before)
+        left = residual.xreplace(torques).subs(rates).xreplace(self.chain.path)
+        return of_differences(left) + self.motion.power_of_the_error()

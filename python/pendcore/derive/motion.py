@@ -1,30 +1,34 @@
-"""The equations of motion collected: M(q) qdd = f(t, q, qd), and with locks M qdd = f + lambda.
+"""The equations of motion collected, M(q) qdd = f(t, q, qd), and solved for the accelerations.
 
 The n moment equations without reactions are linear in the accelerations; M and f are their
-coefficients, with products of sines and cosines written as sines and cosines of differences.
+coefficients, with products of sines and cosines written as sines and cosines of differences. With
+locks, M qdd = f + lambda: links that turn as one have one unknown, and with qd = B r the couples of
+locks, which do no work, drop out of
+
+    B^T M B rd = B^T f
+
+Cramer's rule solves them, which is short where it is written out, and so does elimination,
+M = L D L^T, which is short where it is computed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cached_property
 from typing import NamedTuple
 
-from sympy import Expr, ImmutableMatrix, Integer, Matrix, Symbol
+import sympy
+from sympy import Add, Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
 
 from pendcore.derive.chain import of_differences
 from pendcore.derive.newton_euler import NewtonEuler
 
+Assignments = tuple[tuple[Symbol, Expr], ...]
+"""Symbols and what they stand for, each in terms of those before it."""
+
 
 class Named(NamedTuple):
-    """M and f with a symbol for each entry that is not 0.
-
-    Attributes
-    ----------
-    entries : dict
-        What the symbols stand for, with torques and loads as symbols.
-    matrix, right : sympy.Matrix, (n, n), (n, 1)
-        M and f in terms of them.
-    """
+    """M and f with a symbol for each entry that is not 0, and what the symbols stand for."""
 
     entries: dict[Symbol, Expr]
     matrix: Matrix
@@ -32,23 +36,18 @@ class Named(NamedTuple):
 
 
 class Motion:
-    """Mass matrix and forcing of a chain.
-
-    Parameters
-    ----------
-    equations : NewtonEuler
-        Newton's and Euler's equations.
-    """
+    """Mass matrix, forcing and accelerations of a chain, from Newton's and Euler's equations."""
 
     def __init__(self, equations: NewtonEuler) -> None:
         self.equations = equations
-        self.notation = equations.notation
+        self.symbols = equations.notation
+        self.n = equations.n
 
     @cached_property
     def mass_matrix(self) -> Matrix:
-        """M, (n, n), kg m^2, of the chain with all its joints free, even if some are locked."""
+        """M of ``M qdd = forcing``, (n, n), kg m^2, of the chain with all its joints free."""
         rows = [
-            [of_differences((line.inertia - line.acting).diff(a)) for a in self.notation.qdd]
+            [of_differences((line.inertia - line.acting).diff(a)) for a in self.symbols.qdd]
             for line in self.equations.without_reactions
         ]
         return ImmutableMatrix(rows)
@@ -56,12 +55,11 @@ class Motion:
     @cached_property
     def forcing_by_definitions(self) -> Matrix:
         """f, (n, 1), N m, with torques and loads as symbols, without the couples of locks."""
-        at_rest = dict.fromkeys(self.notation.qdd, Integer(0))
-        at_rest |= dict.fromkeys(self.equations.holding.values(), Integer(0))
-        lines = []
-        for line in self.equations.without_reactions:
-            lines.append([of_differences((line.acting - line.inertia).subs(at_rest))])
-        return ImmutableMatrix(lines)
+        at_rest = dict.fromkeys([*self.symbols.qdd, *self.equations.holding.values()], Integer(0))
+        return ImmutableMatrix([
+            of_differences((line.acting - line.inertia).subs(at_rest))
+            for line in self.equations.without_reactions
+        ])  # fmt: skip
 
     @cached_property
     def definitions(self) -> dict[Symbol, Expr]:
@@ -73,37 +71,43 @@ class Motion:
 
     @cached_property
     def forcing(self) -> Matrix:
-        """f, (n, 1), N m, in t, q, qd and parameters."""
+        """The right side of ``M qdd = forcing``, (n, 1), N m, in t, q, qd and parameters."""
         return self.forcing_by_definitions.xreplace(self.definitions)
 
     @cached_property
     def named(self) -> Named:
         """M and f with a symbol for each entry that is not 0."""
-        n, symbol = self.notation.n, self.notation.symbol
         entries: dict[Symbol, Expr] = {}
-        matrix = Matrix.zeros(n, n)
-        for i in range(n):
-            for j in range(i, n):
-                if self.mass_matrix[i, j] != 0:
-                    name = symbol(f"M{i + 1}{j + 1}", f"M_{{{i + 1}{j + 1}}}")
-                    entries[name] = self.mass_matrix[i, j]
-                    matrix[i, j] = matrix[j, i] = name
-        right = Matrix.zeros(n, 1)
-        for i, value in enumerate(self.forcing_by_definitions, start=1):
+        matrix, right = Matrix.zeros(self.n, self.n), Matrix.zeros(self.n, 1)
+
+        def keep(letter: str, index: str, value: Expr) -> Expr:
             if value != 0:
-                right[i - 1] = symbol(f"f{i}", f"f_{{{i}}}")
-                entries[right[i - 1]] = value
+                name = self.symbols.symbol(f"{letter}{index}", f"{letter}_{{{index}}}")
+                entries[name], value = value, name
+            return value
+
+        for i in range(self.n):
+            for j in range(i, self.n):
+                value = keep("M", f"{i + 1}{j + 1}", self.mass_matrix[i, j])
+                matrix[i, j] = matrix[j, i] = value
+        for i, value in enumerate(self.forcing_by_definitions):
+            right[i] = keep("f", f"{i + 1}", value)
         return Named(entries, matrix.as_immutable(), right.as_immutable())
+
+    @cached_property
+    def known(self) -> dict[Symbol, Expr]:
+        """The symbols of `named`, in t, q, qd and parameters alone."""
+        return {name: x.xreplace(self.definitions) for name, x in self.named.entries.items()}
 
     @cached_property
     def locking(self) -> dict[Symbol, Expr]:
         """The couple of locks on each link, if any: lambda_i = Lambda_i - Lambda_(i+1), N m."""
-        couples, found = self.equations.holding, dict[Symbol, Expr]()
-        for i in range(1, self.notation.n + 1):
-            value = couples.get(i, Integer(0)) - couples.get(i + 1, Integer(0))
-            if value != 0:
-                found[self.notation.symbol(f"lambda{i}", rf"\lambda_{{{i}}}")] = value
-        return found
+        couples, symbol = self.equations.holding, self.symbols.symbol
+        return {
+            symbol(f"lambda{i}", rf"\lambda_{{{i}}}"): couples.get(i, 0) - couples.get(i + 1, 0)
+            for i in range(1, self.n + 1)
+            if i in couples or i + 1 in couples
+        }
 
     @property
     def law(self) -> str:
@@ -117,10 +121,120 @@ class Motion:
         Without locks B is the identity.
         """
         columns: list[list[int]] = []
-        for link in range(1, self.notation.n + 1):
+        for link in range(1, self.n + 1):
             if link not in self.equations.locked:
                 columns.append([link])
             elif columns:  # otherwise the ground holds the link
                 columns[-1].append(link)
-        size = self.notation.n, len(columns)
-        return ImmutableMatrix(*size, lambda i, k: int(i + 1 in columns[k]))
+        return ImmutableMatrix(self.n, len(columns), lambda i, k: int(i + 1 in columns[k]))
+
+    @cached_property
+    def _free(self) -> tuple[Matrix, Matrix]:
+        """B^T M B and B^T f."""
+        _, matrix, right = self.named
+        together = self.turning_together
+        return together.T * matrix * together, together.T * right
+
+    @cached_property
+    def determinant(self) -> Expr:
+        """The determinant of B^T M B, in the symbols of `named`."""
+        return expand(self._free[0].det(method="berkowitz"))
+
+    @cached_property
+    def by_entries(self) -> tuple[Expr, ...]:
+        """The accelerations in the symbols of `named`, from Cramer's rule."""
+        matrix, right = self._free
+        free = []
+        for k in range(matrix.rows):
+            replaced = matrix.as_mutable()
+            replaced[:, k] = right
+            free.append(expand(replaced.det(method="berkowitz")) / self.determinant)
+        return tuple(self.turning_together * ImmutableMatrix(matrix.rows, 1, free))
+
+    @cached_property
+    def accelerations(self) -> tuple[Expr, ...]:
+        """Angular accelerations written out, in t, q, qd and parameters, (n,), rad/s^2."""
+        return tuple([expression.xreplace(self.known) for expression in self.by_entries])
+
+    @cached_property
+    def holding(self) -> dict[int, Expr]:
+        """The couple of each locked joint on the link beyond it, N m.
+
+        It is what M qdd - f leaves over, in the symbols of `named` and the accelerations.
+        """
+        left = self.named.matrix * Matrix(self.symbols.qdd) - self.named.right
+        found: dict[int, Expr] = {}
+        for joint in reversed(self.equations.locked):
+            found[joint] = left[joint - 1] + found.get(joint + 1, Integer(0))
+        return dict(sorted(found.items()))
+
+    def power_of_the_error(self) -> Expr:
+        """Return qd . (M qdd - f), W, at the solved accelerations: 0 for any M and f."""
+        matrix, right = self._free
+        together = self.turning_together
+        first = [[*together[:, k]].index(1) for k in range(matrix.rows)]
+        free = Matrix(len(first), 1, [self.by_entries[i] for i in first])
+        error = (matrix * free - right).applyfunc(sympy.cancel)
+        return sum((self.symbols.qd[i] * e for i, e in zip(first, error, strict=True)), Integer(0))
+
+    @property
+    def shared(self) -> Assignments:
+        """What leads to `shared_accelerations`: laws, entries of M and f, elimination."""
+        return self._elimination[0]
+
+    @property
+    def by_elimination(self) -> Assignments:
+        """The part of `shared` that eliminates: D, L, h and a, in the symbols of `named`."""
+        known = self.definitions.keys() | self.named.entries.keys()
+        return tuple((symbol, x) for symbol, x in self.shared if symbol not in known)
+
+    @property
+    def shared_accelerations(self) -> tuple[Expr, ...]:
+        """The accelerations in terms of the symbols of `shared`, (n,), rad/s^2."""
+        return self._elimination[1]
+
+    @cached_property
+    def _elimination(self) -> tuple[Assignments, tuple[Expr, ...]]:
+        """M = L D L^T, L h = f, L^T a = D^-1 h; no pivoting, because M is positive definite."""
+        matrix, right = self._free
+        done = [(d.symbol, d.value) for d in self.equations.definitions]
+        done += self.named.entries.items()
+
+        def keep(letter: str, index: str, value: Expr) -> Expr:
+            if value.is_Atom:
+                return value
+            latex = rf"\ell_{{{index}}}" if letter == "l" else f"{letter}_{{{index}}}"
+            done.append((self.symbols.symbol(f"{letter}{index}", latex), value))
+            return done[-1][0]
+
+        size = matrix.rows
+        lower = sympy.zeros(size, size)
+        pivots: list[Expr] = []
+        reduced: list[Expr] = []
+        for j in range(size):
+            before = range(j)
+            pivot = matrix[j, j] - Add(*(lower[j, k] ** 2 * pivots[k] for k in before))
+            pivots.append(keep("D", f"{j + 1}", pivot))
+            rest = right[j] - Add(*(lower[j, k] * reduced[k] for k in before))
+            reduced.append(keep("h", f"{j + 1}", rest))
+            for i in range(j + 1, size):
+                rest = matrix[i, j] - Add(*(lower[i, k] * lower[j, k] * pivots[k] for k in before))
+                lower[i, j] = keep("l", f"{i + 1}{j + 1}", rest / pivots[j])
+        free = [Integer(0)] * size
+        for i in reversed(range(size)):
+            rest = Add(*(lower[k, i] * free[k] for k in range(i + 1, size)))
+            value = reduced[i] / pivots[i] - rest
+            free[i] = keep("a", f"{i + 1}", value) if i > 0 else value
+        solved = tuple(self.turning_together * ImmutableMatrix(size, 1, free))
+        return needed(done, solved), solved
+
+
+def needed(assignments: Iterable[tuple[Symbol, Expr]], wanted: Iterable[Expr]) -> Assignments:
+    """Return the assignments on which the wanted expressions depend."""
+    symbols = set[Symbol]().union(*(expression.free_symbols for expression in wanted))
+    found: Assignments = ()
+    for symbol, value in reversed([*assignments]):
+        if symbol in symbols:
+            symbols |= value.free_symbols
+            found = ((symbol, value), *found)
+    return found

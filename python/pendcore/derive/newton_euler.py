@@ -22,7 +22,7 @@ from sympy import Expr, Integer, Symbol, expand
 from pendcore.derive.chain import Chain, Vector, cross, minus, of_differences
 from pendcore.derive.laws import Definition, Law, LinkLoad
 
-ZERO: Vector = (Integer(0), Integer(0))
+NOTHING = Integer(0)
 
 
 class Balance(NamedTuple):
@@ -33,17 +33,9 @@ class Balance(NamedTuple):
 
 
 class LinkEquations(NamedTuple):
-    """The three equations of a link.
+    """The three equations of a link: Newton's along x and y, N, and Euler's, N m.
 
-    Attributes
-    ----------
-    newton : (Balance, Balance)
-        Newton's equations along x and y, N.
-    moment : Balance
-        Euler's equation, N m: about the pivot A for link 1, if A is fixed; else about the mass
-        centre.
-    about_pivot : bool
-        Whether Euler's equation is about the pivot.
+    Euler's is about the pivot A for link 1, if A is fixed; else about the mass centre.
     """
 
     newton: tuple[Balance, Balance]
@@ -52,17 +44,10 @@ class LinkEquations(NamedTuple):
 
 
 class PayloadEquations(NamedTuple):
-    """A body at the tip, and its equations.
+    """A body at the tip, all payloads together, kg and kg m^2, and its equations, N.
 
-    Attributes
-    ----------
-    mass, inertia : sympy.Expr
-        All payloads together, kg and kg m^2.
-    force : tuple of sympy.Symbol
-        F_p3 and so on: the unknown force of the body on the last link. The opposite force acts on
-        the body.
-    newton : (Balance, Balance)
-        Newton's equations along x and y, N.
+    The force F_p3 and so on is the unknown force of the body on the last link. The opposite force
+    acts on the body.
     """
 
     mass: Expr
@@ -72,29 +57,35 @@ class PayloadEquations(NamedTuple):
 
 
 class NewtonEuler:
-    """The equations of all links of a chain.
+    """The equations of all links of a chain, with what acts on them besides gravity.
 
-    Parameters
+    Attributes
     ----------
-    chain : Chain
-        Kinematics.
-    laws : sequence of Law
-        What acts besides gravity.
+    forces : tuple of (Symbol, Symbol)
+        The unknown forces, N: F_01, F_21, F_32, ...
+    loads : list of LinkLoad
+        The forces on links and their moments.
+    locked, holding : list of int, dict
+        The locked joints, and their unknown couples on the link beyond them, N m.
+    armatures : list of Expr
+        Moment of inertia of the rotors at each joint, kg m^2.
     """
 
     def __init__(self, chain: Chain, laws: Sequence[Law]) -> None:
-        self.chain = chain
-        self.laws = tuple(laws)
-        s = self.notation = chain.notation
-        self.n = s.n
-        self.forces = tuple(self._force(i) for i in range(s.n))
+        self.chain, self.laws = chain, tuple(laws)
+        self.notation, self.n = chain.notation, chain.notation.n
+        pairs = ["01", *(f"{i + 1}{i}" if i < 9 else f"{i + 1}_{i}" for i in range(1, self.n))]
+        self.forces = tuple(map(self._force, pairs))
+        self.loads: list[LinkLoad] = [law.load for law in laws if law.load is not None]
+        self.locked = sorted({law.effect.joint for law in laws if law.locks})
+        symbol = self.notation.symbol
+        self.holding = {j: symbol(f"Lambda{j}", rf"\Lambda_{{{j}}}") for j in self.locked}
+        self.armatures = [NOTHING] * self.n
+        for law in laws:
+            if law.armature is not None:
+                self.armatures[law.effect.joint - 1] += law.armature
 
-    def _force(self, joint: int) -> tuple[Symbol, Symbol]:
-        """F_01 for the pivot, counted as 0; F_21 for joint 1 between links 1 and 2; and so on."""
-        pair = "01" if joint == 0 else f"{joint + 1}{joint}"
-        return self._components(pair if joint < 9 else f"{joint + 1}_{joint}")
-
-    def _components(self, pair: str) -> tuple[Symbol, Symbol]:
+    def _force(self, pair: str) -> tuple[Symbol, Symbol]:
         shown = pair.replace("_", ",")
         x, y = (self.notation.symbol(f"F{pair}{axis}", f"F_{{{shown}{axis}}}") for axis in "xy")
         return x, y
@@ -102,74 +93,55 @@ class NewtonEuler:
     @cached_property
     def payload(self) -> PayloadEquations | None:
         """The body at the tip, if there is one."""
-        found = [payload for law in self.laws if (payload := law.payload()) is not None]
+        found = [law.payload for law in self.laws if law.payload is not None]
         if not found:
             return None
-        mass, inertia = (sum(column, Integer(0)) for column in zip(*found, strict=True))
-        acceleration, weight = self.chain.tip_acceleration, self.weight(mass)
-        force = self._components(f"p{self.n}")
+        mass, inertia = (sum(column, NOTHING) for column in zip(*found, strict=True))
+        force, weight = self._force(f"p{self.n}"), self.weight(mass)
+        acceleration = self.chain.tip_acceleration
         x, y = (Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
         return PayloadEquations(mass, inertia, force, (x, y))
 
     @cached_property
-    def armatures(self) -> tuple[Expr, ...]:
-        """Moment of inertia of the rotors at each joint, kg m^2."""
-        found = [Integer(0)] * self.n
-        for law in self.laws:
-            if (rotor := law.armature()) is not None:
-                found[rotor[0] - 1] += rotor[1]
-        return tuple(found)
-
-    @cached_property
-    def locked(self) -> tuple[int, ...]:
-        """The locked joints."""
-        return tuple(sorted({joint for law in self.laws if (joint := law.lock()) is not None}))
-
-    @cached_property
-    def torques(self) -> tuple[Definition, ...]:
+    def torques(self) -> dict[int, Definition]:
         """tau_j, the torque at each joint that has one, from the laws of effects, N m."""
         found: dict[int, Expr] = {}
         for law in self.laws:
-            couple = law.couple(self.chain)
-            if couple is not None:
-                joint = law.effect.joint
-                found[joint] = found.get(joint, Integer(0)) + couple
+            if law.couple is not None:
+                j = law.effect.joint
+                phi, w, _ = self.chain.joint(j)
+                found[j] = found.get(j, NOTHING) + law.couple(phi, w)
         symbol = self.notation.symbol
-        return tuple(
-            Definition(symbol(f"tau{j}", rf"\tau_{{{j}}}"), found[j], f"torque at joint {j}, N m")
-            for j in sorted(found)
-        )
+        return {
+            j: Definition(symbol(f"tau{j}", rf"\tau_{{{j}}}"), x, f"torque at joint {j}, N m")
+            for j, x in sorted(found.items())
+        }
 
     @cached_property
     def definitions(self) -> tuple[Definition, ...]:
         """All symbols that stand for laws, each in terms of those before it."""
-        path = self.chain.path.items()
         units = {0: "m", 1: "m/s", 2: "m/s^2"}
-        moved = [
+        path = (
             Definition(symbol, law, f"motion of the pivot, {units[symbol.name.count('d')]}")
-            for symbol, law in path
-        ]
-        of_loads = [d for law in self.laws for d in law.definitions(self.chain)]
-        return (*moved, *of_loads, *self.torques)
-
-    @cached_property
-    def loads(self) -> tuple[LinkLoad, ...]:
-        """The forces on links and their moments."""
-        return tuple(load for law in self.laws if (load := law.load(self.chain)) is not None)
-
-    @cached_property
-    def holding(self) -> dict[int, Symbol]:
-        """Unknown couples of the locked joints on the link beyond them, N m."""
-        symbol = self.notation.symbol
-        return {j: symbol(f"Lambda{j}", rf"\Lambda_{{{j}}}") for j in self.locked}
+            for symbol, law in self.chain.path.items()
+        )
+        of_loads = (d for law in self.laws for d in law.definitions(self.chain))
+        return (*path, *of_loads, *self.torques.values())
 
     def joint_couple(self, joint: int) -> Expr:
         """Return the couple on the link beyond a joint: torque, rotor and lock together, N m."""
         if joint > self.n:
-            return Integer(0)
-        torque = {int(d.symbol.name[3:]): d.symbol for d in self.torques}.get(joint, Integer(0))
-        rotor = self.armatures[joint - 1] * self.chain.joint_acceleration(joint)
-        return torque + self.holding.get(joint, Integer(0)) - rotor
+            return NOTHING
+        torque = self.torques[joint].symbol if joint in self.torques else NOTHING
+        rotor = self.armatures[joint - 1] * self.chain.joint(joint)[2]
+        return torque + self.holding.get(joint, NOTHING) - rotor
+
+    def couples(self, link: int) -> Expr:
+        """Return the sum of the couples on a link, in its joints and from the payload, N m."""
+        found = self.joint_couple(link) - self.joint_couple(link + 1)
+        if link == self.n and self.payload is not None:
+            found -= self.payload.inertia * self.notation.qdd[link - 1]
+        return found
 
     def near_force(self, link: int) -> Vector:
         """Return the force on a link where it begins: F_01, or F_12 = -F_21."""
@@ -180,11 +152,11 @@ class NewtonEuler:
         """Return the force on a link where it ends, from the next link or from the payload."""
         if link < self.n:
             return self.forces[link]
-        return ZERO if self.payload is None else self.payload.force
+        return (NOTHING, NOTHING) if self.payload is None else self.payload.force
 
     def weight(self, mass: Expr) -> Vector:
         """Return the weight of a mass: downward, towards +y."""
-        return Integer(0), mass * self.notation.gravity
+        return NOTHING, mass * self.notation.gravity
 
     @cached_property
     def links(self) -> tuple[LinkEquations, ...]:
@@ -208,13 +180,11 @@ class NewtonEuler:
         about_pivot = link == 1 and chain.pivot_is_fixed
         point = begin if about_pivot else center
         resistance = inertia + mass * s.centers[link - 1] ** 2 if about_pivot else inertia
-        moment = cross(minus(center, point), weight) + cross(minus(end, point), far)
-        moment += cross(minus(begin, point), near)
+        moment = self.couples(link)
+        for at, force in ((center, weight), (end, far), (begin, near)):
+            moment += cross(minus(at, point), force)
         for load in loads:
             moment += of_differences(load.moment + cross(minus(begin, point), load.force))
-        moment += self.joint_couple(link) - self.joint_couple(link + 1)
-        if link == self.n and self.payload is not None:
-            moment -= self.payload.inertia * turning
         return LinkEquations((x, y), Balance(resistance * turning, expand(moment)), about_pivot)
 
     @cached_property

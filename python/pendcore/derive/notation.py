@@ -7,12 +7,12 @@ keeps every derivative an ordinary partial one; LaTeX shows rates and accelerati
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from sympy import Expr, Rational, Symbol
 
-from pendcore._scene.scene import Scene
+from pendcore import Scene
+from pendcore.derive import writing
 from pendcore.derive.writing import (
     ACCELERATION,
     ANGLE,
@@ -22,13 +22,13 @@ from pendcore.derive.writing import (
     MASS,
     RATE,
     UNKNOWN,
-    Latex,
-    Text,
 )
 
+DOTTED = {"": "{}", "d": r"\dot{{{}}}", "dd": r"\ddot{{{}}}"}
+"""How LaTeX writes what the name of a symbol says by d and dd."""
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+
+class Parameter(NamedTuple):
     """A constant of the scene.
 
     Attributes
@@ -65,63 +65,56 @@ class Notation:
     centers, inertias : tuple of sympy.Expr, (n,)
         Distance of the mass centre from the joint where the link begins (m), and moment of inertia
         about the mass centre (kg m^2): symbols, or ``L/2`` and ``m L^2/12`` for a uniform rod.
+    parameters : list of Parameter
+        The constants of the scene: those of links and gravity first, then the effects'.
     latex_names : dict
         How LaTeX writes the symbols.
     """
 
     def __init__(self, scene: Scene) -> None:
-        self.n = n = len(scene.links)
+        self.n = len(scene.links)
         self.latex_names: dict[Symbol, str] = {}
-        self._parameters: list[Parameter] = []
+        self.parameters: list[Parameter] = []
         self._ranks: dict[Symbol, tuple[int, int]] = {}
-        self.t = self.symbol("t", "t")
-        links = range(1, n + 1)
-        self.q = tuple(self.symbol(f"q{i}", f"q_{{{i}}}") for i in links)
-        self.qd = tuple(self.symbol(f"qd{i}", rf"\dot{{q}}_{{{i}}}") for i in links)
-        self.qdd = tuple(self.symbol(f"qdd{i}", rf"\ddot{{q}}_{{{i}}}") for i in links)
+        links = [*enumerate(scene.links, start=1)]
+        self.t = self.symbol("t", "t", ANGLE)
+        self.q, self.qd, self.qdd = (
+            tuple(self.symbol(f"q{dots}{i}", f"{shown.format('q')}_{{{i}}}", kind, i)
+                  for i, _ in links)
+            for (dots, shown), kind in zip(DOTTED.items(), (ANGLE, RATE, ACCELERATION), strict=True)
+        )  # fmt: skip
         self.masses = tuple(
-            self.parameter(f"m{i}", f"m_{{{i}}}", link.mass, "kg", f"mass of link {i}")
-            for i, link in enumerate(scene.links, start=1)
+            self.parameter(f"m{i}", f"m_{{{i}}}", link.mass, "kg", f"mass of link {i}", (MASS, i))
+            for i, link in links
         )
         self.lengths = tuple(
-            self.parameter(f"L{i}", f"L_{{{i}}}", link.length, "m", f"length of link {i}")
-            for i, link in enumerate(scene.links, start=1)
+            self.parameter(
+                f"L{i}", f"L_{{{i}}}", link.length, "m", f"length of link {i}", (LENGTH, i)
+            )
+            for i, link in links
         )
-        centers: list[Expr] = []
-        inertias: list[Expr] = []
-        for i, link in enumerate(scene.links, start=1):
-            own, mass, length = link.particulars(), self.masses[i - 1], self.lengths[i - 1]
-            if "center" in own:
+        self.centers: tuple[Expr, ...] = ()
+        self.inertias: tuple[Expr, ...] = ()
+        for (i, link), mass, length in zip(links, self.masses, self.lengths, strict=True):
+            center, inertia = length / 2, Rational(1, 12) * mass * length**2
+            if "center" in link.particulars():
                 words = f"distance of the mass centre of link {i} from the joint where it begins"
-                centers.append(self.parameter(f"c{i}", f"c_{{{i}}}", link.center, "m", words))
-            else:
-                centers.append(length / 2)
-            if "inertia" in own:
+                name = f"c_{{{i}}}"
+                center = self.parameter(f"c{i}", name, link.center, "m", words, (LENGTH, i))
+            if "inertia" in link.particulars():
                 words = f"moment of inertia of link {i} about its mass centre"
                 name = f"I_{{C_{{{i}}}}}"
-                inertias.append(self.parameter(f"I_C{i}", name, link.inertia, "kg m^2", words))
-            else:
-                inertias.append(Rational(1, 12) * mass * length**2)
-        self.centers, self.inertias = tuple(centers), tuple(inertias)
-        self.gravity = self.parameter("g", "g", scene.gravity, "m/s^2", "acceleration of gravity")
-        self._ranks |= {self.t: (ANGLE, 0), self.gravity: (GRAVITY, 0)}
-        for kind, row in (
-            (ANGLE, self.q), (RATE, self.qd), (ACCELERATION, self.qdd),
-            (MASS, self.masses), (MASS, self.inertias),
-            (LENGTH, self.lengths), (LENGTH, self.centers),
-        ):  # fmt: skip
-            for i, symbol in enumerate(row, start=1):
-                self._ranks[symbol] = (kind, i)
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """The constants of the scene: those of links and gravity first, then the effects'."""
-        return tuple(self._parameters)
+                rank = MASS, i
+                inertia = self.parameter(f"I_C{i}", name, link.inertia, "kg m^2", words, rank)
+            self.centers += (center,)
+            self.inertias += (inertia,)
+        words = "acceleration of gravity"
+        self.gravity = self.parameter("g", "g", scene.gravity, "m/s^2", words, (GRAVITY, 0))
 
     @property
     def values(self) -> dict[Symbol, float]:
         """The numbers of the scene."""
-        return {parameter.symbol: parameter.value for parameter in self._parameters}
+        return {parameter.symbol: parameter.value for parameter in self.parameters}
 
     def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
         """Return the real symbol of that name, and remember how it is written and ordered."""
@@ -130,6 +123,13 @@ class Notation:
         if rank is not None:
             self._ranks[made] = rank, link
         return made
+
+    def fresh(self, name: str, latex: str) -> tuple[str, str]:
+        """Return a name that no symbol has yet: a second one, as of two dampers, has a number."""
+        taken, count = {symbol.name for symbol in self.latex_names}, 1
+        while (name if count == 1 else f"{name}_{count}") in taken:
+            count += 1
+        return (name, latex) if count == 1 else (f"{name}_{count}", f"{{{latex}^{{({count})}}}}")
 
     def parameter(
         self,
@@ -140,17 +140,9 @@ class Notation:
         meaning: str,
         rank: tuple[int, int] = (CONSTANT, 0),
     ) -> Symbol:
-        """Return a new symbol for a constant of the scene.
-
-        A second symbol of the same name, as for two dampers in one joint, gets a number.
-        """
-        taken = [p.symbol.name for p in self._parameters]
-        count = 1 + sum(known == name or known.startswith(f"{name}__") for known in taken)
-        if count > 1:
-            name, latex = f"{name}__{count}", f"{{{latex}^{{({count})}}}}"
-        symbol = self.symbol(name, latex)
-        self._parameters.append(Parameter(symbol, float(value), unit, meaning))
-        self._ranks[symbol] = rank
+        """Return a new symbol for a constant of the scene."""
+        symbol = self.symbol(*self.fresh(name, latex), *rank)
+        self.parameters.append(Parameter(symbol, float(value), unit, meaning))
         return symbol
 
     def rank(self, symbol: Symbol) -> tuple[int, int]:
@@ -159,12 +151,12 @@ class Notation:
 
     def latex(self, expression: Any) -> str:
         """Write an expression in LaTeX."""
-        return Latex(self.rank, self.latex_names).write(expression)
-
-    def terms(self, expression: Expr) -> list[Expr]:
-        """Return the terms of a sum in the order in which they are written."""
-        return Latex(self.rank, self.latex_names).terms(expression)
+        return writing.latex(expression, self.rank, self.latex_names)
 
     def text(self, expression: Any) -> str:
         """Write an expression as a line of text that Python and SymPy read."""
-        return Text(self.rank, self.latex_names).write(expression)
+        return writing.text(expression, self.rank)
+
+    def terms(self, total: Expr) -> list[Expr]:
+        """Return the terms of a sum in the order in which they are written."""
+        return writing.terms(total, self.rank)

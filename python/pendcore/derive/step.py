@@ -3,33 +3,31 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import groupby
 from textwrap import fill
-from typing import Any, NamedTuple
-
-from sympy import sympify
+from typing import Any
 
 from pendcore.derive import line_breaks
+from pendcore.derive.document import Block, Displayed, Heading, Paragraph, Reader, written
 from pendcore.derive.notation import Notation
 
+A_BLOCK = 12
+"""The most rows that are displayed together."""
+A_PAGE = 24
+"""Rows that one equation may have before a page must be able to end in it."""
 
-class Formula(NamedTuple):
-    """One side of an equation that is no scalar expression, such as a sum of vectors.
 
-    Attributes
-    ----------
-    text, latex : str
-        As text and as LaTeX.
-    terms : tuple of str
-        The terms of a sum in LaTeX, with their signs, between which a line may end.
-    """
+class Formula(str):
+    """LaTeX of one side of an equation that is no scalar expression, such as a sum of vectors."""
 
-    text: str
-    latex: str
-    terms: tuple[str, ...] = ()
+    __slots__ = ()
 
-    def __str__(self) -> str:
-        return self.text
+    @property
+    def text(self) -> str:
+        """The same as text."""
+        return spoken(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,48 +42,32 @@ class Equation:
         The textbook's number, such as ``"2.1"``, if it is one of the textbook's.
     remark : str
         A remark on the equation; empty if there is none.
+    notation : Notation
+        Writes its sides.
     """
 
     lhs: Any
     rhs: Any
-    number: str | None = None
-    remark: str = ""
-    notation: Notation | None = field(default=None, compare=False, repr=False)
+    number: str | None
+    remark: str
+    notation: Notation = field(compare=False, repr=False)
 
     def __str__(self) -> str:
-        number = f"    ({self.number})" if self.number else ""
-        return f"{self._text(self.lhs)} = {self._text(self.rhs)}{number}"
+        left, right = (x.text if isinstance(x, Formula) else self.notation.text(x)
+                       for x in (self.lhs, self.rhs))  # fmt: skip
+        return f"{left} = {right}" + (f"    ({self.number})" if self.number else "")
+
+    def side_latex(self, side: Any) -> str:
+        """Return one side in LaTeX."""
+        return str(side) if isinstance(side, Formula) else self.notation.latex(side)
 
     def latex(self) -> str:
         """Return both sides in LaTeX, without the number: ``lhs &= rhs``."""
         return f"{self.side_latex(self.lhs)} &= {self.side_latex(self.rhs)}"
 
-    def _text(self, side: Any) -> str:
-        if isinstance(side, Formula) or self.notation is None:
-            return str(side)
-        return self.notation.text(side)
-
     def rows(self, margin: float = 0.0) -> list[str]:
-        """Return the equation in LaTeX on as many rows of an ``align`` as it takes.
-
-        Parameters
-        ----------
-        margin : float
-            Width of the widest left side that it is aligned with; see `line_breaks.rows`.
-        """
-        left, right = self.side_latex(self.lhs), self.rhs
-        if self.notation is None:
-            raise ValueError(f"{self}: has no notation, which LaTeX needs")
-        whole = (right.terms or right.latex) if isinstance(right, Formula) else sympify(right)
-        return line_breaks.rows(left, whole, self.notation, margin)
-
-    def side_latex(self, side: Any) -> str:
-        """Return one side in LaTeX."""
-        if isinstance(side, Formula):
-            return side.latex
-        if self.notation is None:
-            raise ValueError(f"{self}: has no notation, which LaTeX needs")
-        return self.notation.latex(side)
+        """Return the equation on as many rows as it takes; see `line_breaks.rows`."""
+        return line_breaks.rows(self.side_latex(self.lhs), self.side_latex(self.rhs), margin)
 
     def _repr_latex_(self) -> str:
         tag = rf" \tag{{{self.number}}}" if self.number else ""
@@ -111,6 +93,27 @@ class Step:
     text: str
     equations: tuple[Equation, ...] = ()
 
+    def blocks(self, note: Callable[[Equation], str] = lambda equation: "") -> Iterator[Block]:
+        """Yield what a document has of the step; ``note`` is set behind each equation."""
+        yield Heading(3, f"{self.number}. {self.title}")
+        yield Paragraph(self.text)
+        for number, equations in groups(self.equations):
+            margin = max(line_breaks.width(e.side_latex(e.lhs)) for e in equations)
+            rows: list[str] = []
+            for equation in equations:
+                own = equation.rows(margin)
+                own[-1] += note(equation)
+                if number is None and rows and len(rows) + len(own) > A_BLOCK:
+                    yield Displayed(line_breaks.aligned(rows))
+                    rows = []
+                rows += own
+                while len(rows) > A_PAGE:
+                    yield Displayed(line_breaks.aligned(rows[:A_PAGE]))
+                    rows = rows[A_PAGE:]
+            yield Displayed(line_breaks.aligned(rows), number)
+            if equations[-1].remark:
+                yield Paragraph(equations[-1].remark, is_remark=True)
+
     def __str__(self) -> str:
         head = f"{self.number}. {self.title}"
         lines = [head, "-" * len(head), fill(plain(self.text), 88, break_on_hyphens=False), ""]
@@ -123,26 +126,26 @@ class Step:
 
     def latex(self) -> str:
         """Return the step as a LaTeX section, for ``amsmath``."""
-        title = f"\\subsection*{{{self.number}. {self.title}}}"
-        parts = [title, escaped(self.text), *map(_with_remark, self._groups())]
-        return "\n".join(parts)
+        return written(self.blocks(), Reader.LATEX).rstrip()
 
     def _repr_markdown_(self) -> str:
-        parts = [f"### {self.number}. {self.title}", "", self.text, ""]
-        for group in self._groups():
-            parts += ["$$", _aligned(group), "$$", ""]
-            if group[-1].remark:
-                parts += [f"*{group[-1].remark}*", ""]
-        return "\n".join(parts)
+        return written(self.blocks(), Reader.PEOPLE).rstrip()
 
-    def _groups(self) -> list[list[Equation]]:
-        """The equations in groups that are shown together; a remark ends a group."""
-        groups: list[list[Equation]] = []
-        for equation in self.equations:
-            if not groups or groups[-1][-1].remark:
-                groups.append([])
-            groups[-1].append(equation)
-        return groups
+
+def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equation]]]:
+    """Yield the equations that are displayed together: those of one number, or of none.
+
+    A remark ends a group.
+    """
+    for number, of_one in groupby(equations, key=lambda equation: equation.number):
+        together: list[Equation] = []
+        for equation in of_one:
+            together.append(equation)
+            if equation.remark:
+                yield number, together
+                together = []
+        if together:
+            yield number, together
 
 
 def _wrapped(equation: str) -> str:
@@ -150,47 +153,40 @@ def _wrapped(equation: str) -> str:
     for sign in "+-=":
         equation = equation.replace(f" {sign} ", f" {sign}\N{NO-BREAK SPACE}")
     lines = fill(
-        equation.replace("    (", "\N{NO-BREAK SPACE}" * 4 + "("),
-        100,
-        initial_indent=" " * 4,
-        subsequent_indent=" " * 8,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+        equation.replace("    (", "\N{NO-BREAK SPACE}" * 4 + "("), 100,
+        initial_indent=" " * 4, subsequent_indent=" " * 8,
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
     return lines.replace("\N{NO-BREAK SPACE}", " ")
+
+
+_SPOKEN = (
+    (r"\\(?:left|right|math\w+|boldsymbol|displaystyle)\b ?", ""),
+    (r"\\begin{vmatrix} ?(.*?) ?\\end{vmatrix}", r"det[\1]"),
+    (r" \\\\ ", "; "),
+    (r" & ", ", "),
+    (r"\\times", "x"),
+    (r" ?\\cdot ?", "*"),
+    (r" ?\\[,;]", " "),
+    (r"\\var", r"\\"),
+    (r"_{(\w+ ?[+-] ?\w+)}", r"_(\1)"),
+    (r"\\(d+)ot{(\\?\w+)}", r"\2\1"),
+    (r"_{(\d\w*)}", r"\1"),
+    (r"_{(\w),(\w+)}", r"\1_\2"),
+    (r"\\frac{((?:[^{}]|{[^{}]*})*)}{((?:[^{}]|{[^{}]*})*)}", r"\1/\2"),
+    (r"\\hat|[\\{}]", ""),
+    (r" +", " "),
+)
+"""What stands for LaTeX's marks in text, in this order."""
+
+
+def spoken(latex: str) -> str:
+    """Return a formula as plain text: ``q1``, ``M qdd = f``, ``r_AB x F21``."""
+    for pattern, text in _SPOKEN:
+        latex = re.sub(pattern, text, latex)
+    return latex
 
 
 def plain(text: str) -> str:
     """Return a text with its inline LaTeX written as plain text."""
-    return "".join(_spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))
-
-
-def _spoken(latex: str) -> str:
-    """Return a short formula without LaTeX's marks: ``q1``, ``M qdd = f``."""
-    spoken = latex.replace(r"\,", " ")
-    for dots, letters in ((r"\ddot", "dd"), (r"\dot", "d")):
-        spoken = re.sub(rf"{re.escape(dots)}{{(\w+)}}", rf"\g<1>{letters}", spoken)
-    spoken = re.sub(r"\\math\w+{(\w+)}", r"\1", spoken)
-    spoken = re.sub(r"_{(\d+)}", r"\1", spoken)
-    return re.sub(r"[\\{}]", "", spoken)
-
-
-def escaped(text: str) -> str:
-    """Return a text as LaTeX takes it, with percent signs and hashes escaped."""
-    return text.replace("%", r"\%").replace("#", r"\#")
-
-
-def _aligned(group: list[Equation]) -> str:
-    margin = max(line_breaks.width(equation.side_latex(equation.lhs)) for equation in group)
-    lines = []
-    for equation in group:
-        *rows, last = equation.rows(margin)
-        tag = rf" \tag{{{equation.number}}}" if equation.number else r" \notag"
-        lines += [*(row + r" \notag" for row in rows), last + tag]
-    body = " \\\\\n".join(lines)
-    return f"\\begin{{align}}\n{body}\n\\end{{align}}"
-
-
-def _with_remark(group: list[Equation]) -> str:
-    remark = escaped(group[-1].remark)
-    return _aligned(group) + (f"\n\\emph{{{remark}}}\n" if remark else "")
+    return "".join(spoken(x) if k % 2 else x for k, x in enumerate(text.split("$")))

@@ -1,1 +1,1 @@
-"""A derivation as code: MATLAB and Octave, Python, C++."""
+"""A derivation as code, printed by SymPy into short templates: MATLAB and Octave, Python, C++."""

@@ -2,40 +2,28 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from sympy import Expr, cos, cxxcode, sin
+from sympy.printing.cxx import CXX17CodePrinter
+
 from pendcore.derive.algebra import Algebra
+from pendcore.derive.code.computation import Computation, computations, powers_by_name
 from pendcore.derive.code.layout import (
+    assigned,
     chain_in_words,
     constants,
-    identifiers,
     indented,
-    meanings,
     origin,
     wrapped,
 )
-from pendcore.derive.code.printer import Cpp
-from pendcore.derive.code.quantities import Quantities
-from pendcore.derive.code.shared import Computation
 
-TAKEN = (
-    *("links", "t", "y", "dydt", "q", "qd", "qdd", "force", "energy", "power", "square", "cube"),
-    *("right_hand_side", "accelerations", "reactions", "energies", "powers", "total", "std"),
-    *("Angles", "State", "Force", "Energy", "Powers", "x", "kinetic", "potential"),
-)
-"""Names that the header uses for itself."""
+KEYWORDS = {*CXX17CodePrinter.reserved_words, "catch", "register"}  # SymPy forgets these two
 
-KEYWORDS = {
-    *("alignas", "alignof", "and", "asm", "auto", "bitand", "bitor", "bool", "break", "case"),
-    *("catch", "char", "class", "compl", "const", "constexpr", "continue", "decltype", "default"),
-    *("delete", "do", "double", "else", "enum", "explicit", "export", "extern", "false", "float"),
-    *("for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new"),
-    *("noexcept", "not", "nullptr", "operator", "or", "private", "protected", "public"),
-    *("register", "return", "short", "signed", "sizeof", "static", "struct", "switch"),
-    *("template", "this", "throw", "true", "try", "typedef", "typeid", "typename", "union"),
-    *("unsigned", "using", "virtual", "void", "volatile", "while", "xor"),
-}
-"""Keywords of C++ that Python allows as names."""
-
-HEAD = """/// \\file
+HEADER = """\
+/// \\file
 /// {chain}: right-hand side, joint reactions, energies. Needs nothing but C++17.
 ///
 {origin}
@@ -43,12 +31,12 @@ HEAD = """/// \\file
 ///     M(q) qdd = f(t, q, qd)          M the mass matrix ({n} x {n}), kg m^2; f in N m
 ///     y = (q_1 .. q_n, qd_1 .. qd_n)  the state, 2n numbers: dy/dt = (qd, qdd)
 ///
-/// Cost: {cost}.
+/// Cost: {calls} sines and cosines, {others} other operations a right-hand side.
 /// Nothing is allocated and nothing thrown; angles and rates that are not finite give NaN.
 ///
 ///     {namespace}::{name} chain;
 ///     auto dydt = chain.right_hand_side(t, y);   // with the scene's numbers
-///     chain.{first} = 2.0;
+///     chain.m1 = 2.0;
 ///     chain(y, dydt, t);                         // with others; as Boost.odeint calls a system
 #pragma once
 
@@ -75,40 +63,72 @@ struct {name} {{
     double potential;  ///< J; 0 at the height of the origin
     double total() const {{ return kinetic + potential; }}
   }};
-"""
-
-DOCUMENTATION = {
-    "accelerations": ["Angular accelerations of the links, rad/s^2."],
-    "reactions": [
-        "Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1",
-        "on link 2, and so on.",
-    ],
-    "energy": ["Kinetic and potential energy of the chain."],
-    "powers": ["Power of each effect."],
-}
-
-RIGHT_HAND_SIDE = """
+{powers}
   /// dy/dt of the state y.
-  State right_hand_side(double t, const State& y) const {
-    Angles q{}, qd{};
-    for (std::size_t i = 0; i < links; ++i) {
+  State right_hand_side(double t, const State& y) const {{
+    Angles q{{}}, qd{{}};
+    for (std::size_t i = 0; i < links; ++i) {{
       q[i] = y[i];
       qd[i] = y[links + i];
-    }
+    }}
     const Angles qdd = accelerations(t, q, qd);
-    State dydt{};
-    for (std::size_t i = 0; i < links; ++i) {
+    State dydt{{}};
+    for (std::size_t i = 0; i < links; ++i) {{
       dydt[i] = qd[i];
       dydt[links + i] = qdd[i];
-    }
+    }}
     return dydt;
-  }
+  }}
 
   /// The same as Boost.odeint and others call it.
-  void operator()(const State& y, State& dydt, double t) const { dydt = right_hand_side(t, y); }
+  void operator()(const State& y, State& dydt, double t) const {{ dydt = right_hand_side(t, y); }}
+{functions}
+ private:
+  static double square(double x) {{ return x * x; }}
+  static double cube(double x) {{ return x * x * x; }}
+}};
+
+}}  // namespace {namespace}
 """
-FORCES = "std::array<Force, links>"
-POWER = {"square": "x * x", "cube": "x * x * x"}
+FUNCTION = """
+{documentation}
+  {result} {name}({arguments}) const {{
+{body}
+  }}"""
+POWERS = """
+  /// Power that each effect brings into the chain, W; negative where it takes energy.
+  struct Powers {{
+{members}
+    /// The rate at which kinetic + potential energy grows.
+    double total() const {{
+{total}
+    }}
+  }};
+"""
+FUNCTIONS = {
+    "accelerations": ("Angles", "Angular accelerations of the links, rad/s^2."),
+    "reactions": (
+        "std::array<Force, links>",
+        "Force on each link where it begins: F_01, of the ground on link 1, then F_12, of link 1\n"
+        "on link 2, and so on.",
+    ),
+    "energy": ("Energy", "Kinetic and potential energy of the chain."),
+    "powers": ("Powers", "Power of each effect."),
+}
+TAKEN = {*re.findall(r"[A-Za-z]\w*", re.sub(r"//.*", "", HEADER + POWERS)), *FUNCTIONS}
+"""Names that the header uses for itself."""
+
+PRINTED_AS = {"Pow": [
+    (lambda base, exponent: exponent == 2, lambda base, exponent: f"square({base})"),
+    (lambda base, exponent: exponent == 3, lambda base, exponent: f"cube({base})"),
+    (lambda base, exponent: True, "std::pow"),
+]}  # fmt: skip
+"""What SymPy's printer of C++ writes for powers."""
+
+
+def write(expression: Expr) -> str:
+    """Write an expression in C++."""
+    return str(cxxcode(expression, standard="C++17", user_functions=PRINTED_AS))
 
 
 def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum") -> str:
@@ -116,99 +136,69 @@ def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum"
 
     Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
     ``reactions``, ``energy`` and, where effects do work, ``powers``.
-
-    Parameters
-    ----------
-    derivation : Algebra
-        The derivation of any scene.
-    name, namespace : str, default "Chain" and "pendulum"
-        The name of the struct, and the namespace in which it stands.
     """
-    for what, given, own in (("name", name, TAKEN), ("namespace", namespace, ("std",))):
+    found, powers = computations(derivation), powers_by_name(derivation)
+    inside = {symbol.name for one in found.values() for symbol, _ in one.assignments}
+    inside |= {*TAKEN, *(symbol.name for symbol in derivation.values)}
+    for what, given, own in (("name", name, inside), ("namespace", namespace, {"std"})):
         if not given.isidentifier() or not given.isascii() or given in KEYWORDS:
             raise ValueError(f"{what} = {given!r}: must be a name that C++ allows")
         if given in own:
             raise ValueError(f"{what} = {given!r}: is taken: the header has something of that name")
-    taken = (*TAKEN, name, namespace)
-    n, quantities = derivation.n, Quantities.of(derivation, taken)
-    every = [p.symbol for p in derivation.symbols.parameters]
-    writer = Cpp(identifiers([*every, *quantities.symbols()], taken))
-    numbers = constants(derivation, writer, "  double {} = ", "{!r};", "  ///< {}")
-    text = HEAD.format(
-        chain=chain_in_words(derivation).capitalize(), name=name, namespace=namespace, n=n,
-        origin="\n".join(f"/// {line}".rstrip() for line in origin(derivation)),
-        cost=_cost(quantities), first=writer.doprint(every[0]), constants="\n".join(numbers),
+    accelerations = found["accelerations"]
+    calls = sum(isinstance(value, (sin, cos)) for _, value in accelerations.assignments)
+    return HEADER.format(
+        chain=chain_in_words(derivation).capitalize(), name=name, namespace=namespace,
+        n=derivation.n, origin=origin(derivation, "/// "), calls=calls,
+        others=accelerations.operations - calls,
+        constants=constants(derivation, "  double {} = {!r};", "///< "),
+        powers=_powers(powers) if powers else "",
+        functions="\n".join(
+            _function(derivation, what, one) for what, one in found.items() if one.results
+        ),
     )  # fmt: skip
-    if quantities.powers:
-        text += _powers_struct(quantities)
-    text += RIGHT_HAND_SIDE
-    for result, what, computation in (
-        ("Angles", "accelerations", quantities.accelerations),
-        (FORCES, "reactions", quantities.reactions),
-        ("Energy", "energy", quantities.energies),
-        ("Powers", "powers", quantities.power),
-    ):
-        if computation.results:
-            text += _function(derivation, writer, result, what, computation)
-    used = [f"  static double {one}(double x) {{ return {product}; }}"
-            for one, product in POWER.items() if f"{one}(" in text]  # fmt: skip
-    text += "\n".join(["\n private:", *used, ""]) if used else ""
-    return f"{text}}};\n\n}}  // namespace {namespace}\n"
 
 
-def _cost(quantities: Quantities) -> str:
-    calls = sum(
-        type(value).__name__ in ("sin", "cos") for _, value in quantities.accelerations.assignments
-    )
-    others = quantities.accelerations.operations - calls
-    return f"{calls} sines and cosines, {others} other operations a right-hand side"
+def _powers(powers: dict[str, Any]) -> str:
+    members = []
+    for name, effect in powers.items():
+        members += [f"    /// {line.strip()}" for line in indented(repr(effect))]
+        members.append(f"    double {name};")
+    total = wrapped(f"return {' + '.join(powers)};", "      ")
+    return POWERS.format(members="\n".join(members), total="\n".join(total))
 
 
-def _powers_struct(quantities: Quantities) -> str:
-    told = "Power that each effect brings into the chain, W; negative where it takes energy."
-    lines = [f"  /// {told}", "  struct Powers {"]
-    for name, effect in quantities.powers.items():
-        lines += [f"    /// {line.strip()}" for line in indented(repr(effect))]
-        lines.append(f"    double {name};")
-    lines.append("    /// The rate at which kinetic + potential energy grows.")
-    lines.append("    double total() const {")
-    lines += wrapped(f"return {' + '.join(quantities.powers)};", "      ")
-    return "\n".join([*lines, "    }", "  };", ""])
-
-
-def _function(
-    derivation: Algebra, writer: Cpp, result: str, name: str, computation: Computation
-) -> str:
+def _function(derivation: Algebra, name: str, computation: Computation) -> str:
     """Write a member function of t, q, qd that returns the computation's results in braces."""
     s, needs = derivation.symbols, computation.needs
+    result, documentation = FUNCTIONS[name]
     accelerated = bool(needs & {*s.qdd})
-    time, angles, rates = (
-        f"{kind} {name}" if accelerated or needs & {*symbols} else f"{kind} /*{name}*/"
-        for kind, name, symbols in (
-            ("double", "t", (s.t,)),
-            ("const Angles&", "q", s.q),
-            ("const Angles&", "qd", s.qd),
+    arguments = (
+        f"{kind} {argument}" if accelerated or needs & {*symbols} else f"{kind} /*{argument}*/"
+        for kind, argument, symbols in (
+            ("double", "t", (s.t,)), ("const Angles&", "q", s.q), ("const Angles&", "qd", s.qd)
         )
-    )
-    lines = ["", *(f"  /// {line}" for line in DOCUMENTATION[name])]
-    lines.append(f"  {result} {name}({time}, {angles}, {rates}) const {{")
-    if accelerated:
-        lines.append("    const Angles qdd = accelerations(t, q, qd);")
-    for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
-        parts = [
-            f"{writer.doprint(one)} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs
-        ]
-        lines += wrapped(f"const double {', '.join(parts)};", "    ") if parts else []
-    words = meanings(derivation)
-    for symbol, value in computation.assignments:
-        lines += [f"    // {words[symbol]}"] if symbol in words else []
-        own = f"{writer.doprint(symbol)} = {writer.doprint(value)}"
-        lines += wrapped(f"const double {own};", "    ")
-    values = [writer.doprint(value) for value in computation.results]
-    if result == FORCES:
+    )  # fmt: skip
+    body = [line for one in _statements(derivation, computation) for line in wrapped(one, "    ")]
+    values = [write(value) for value in computation.results]
+    if name == "reactions":
         values = [f"Force{{{x}, {y}}}" for x, y in zip(values[::2], values[1::2], strict=True)]
-    body = [line for value in values for line in wrapped(f"{value},", "        ")]
-    body[-1] = body[-1].removesuffix(",")
-    opening, closing = ("{{", "}}") if result in ("Angles", FORCES) else ("{", "}")
-    lines += [f"    return {result}{opening}", *body, f"    {closing};", "  }"]
-    return "\n".join(lines) + "\n"
+    opened, closed = ("{{", "}}") if name in ("accelerations", "reactions") else ("{", "}")
+    body.append(f"    return {result}{opened}")
+    body += [line for value in values for line in wrapped(f"{value},", "        ")]
+    body.append(f"    {closed};")
+    return FUNCTION.format(
+        documentation="\n".join(f"  /// {line}" for line in documentation.splitlines()),
+        result=result, name=name, arguments=", ".join(arguments), body="\n".join(body),
+    )  # fmt: skip
+
+
+def _statements(derivation: Algebra, computation: Computation) -> Iterator[str]:
+    s, needs = derivation.symbols, computation.needs
+    if needs & {*s.qdd}:
+        yield "const Angles qdd = accelerations(t, q, qd);"
+    for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
+        parts = [f"{one} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs]
+        if parts:
+            yield f"const double {', '.join(parts)};"
+    yield from assigned(derivation, computation, write, "const double {} = {};", "// ")

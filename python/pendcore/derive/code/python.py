@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
+from sympy.printing.numpy import NumPyPrinter
+
 from pendcore.derive.algebra import Algebra
-from pendcore.derive.code.layout import (
-    chain_in_words,
-    constants,
-    identifiers,
-    meanings,
-    origin,
-    wrapped,
-)
-from pendcore.derive.code.printer import NumPy
-from pendcore.derive.code.quantities import Quantities
-from pendcore.derive.code.shared import Computation
+from pendcore.derive.code.computation import Computation, computations, powers_by_name
+from pendcore.derive.code.layout import assigned, chain_in_words, constants, origin, wrapped
 
-TAKEN = (
-    *("np", "n", "t", "y", "q", "qd", "qdd", "force", "kinetic", "potential"),
-    *("right_hand_side", "accelerations", "reactions", "energies", "powers", "annotations"),
-)
-"""Names that the module uses for itself; `identifiers` keeps clear of Python's keywords."""
-
-HEAD = '''"""{chain}: right-hand side, joint reactions, energies.
+MODULE = '''\
+"""{chain}: right-hand side, joint reactions, energies.
 
 {origin}
 
@@ -37,7 +25,7 @@ follow. The numbers below may be changed: each call takes those that stand there
 
 from __future__ import annotations
 
-import numpy as np
+import numpy
 
 n = {n}  # links
 {constants}
@@ -45,24 +33,28 @@ n = {n}  # links
 
 def right_hand_side(t, y):
     """Return dy/dt, (2n, ...), of the state y = (q_1 .. q_n, qd_1 .. qd_n), for `solve_ivp`."""
-    y = np.asarray(y, dtype=float)
-    return np.concatenate([y[n:], accelerations(t, y[:n], y[n:])])
+    y = numpy.asarray(y, dtype=float)
+    return numpy.concatenate([y[n:], accelerations(t, y[:n], y[n:])])
 '''
+FUNCTION = '''
 
+def {name}(t, q, qd):
+    """{documentation}"""
+    q, qd = numpy.asarray(q, dtype=float), numpy.asarray(qd, dtype=float)
+{body}
+    return {returned}
+'''
 DOCUMENTATION = {
-    "accelerations": ["Return the angular accelerations of the links, rad/s^2, (n, ...)."],
-    "reactions": [
-        "Return the force on each link where it begins, N, (n, 2, ...); x right, y down.",
-        "First F_01, of the ground on link 1, then F_12, of link 1 on link 2, and so on.",
-    ],
-    "energies": [
-        "Return kinetic and potential energy, J, the latter 0 at the height of the origin."
-    ],
-    "powers": [
-        "Return the power that each effect brings into the chain, W; "
-        "negative where it takes energy.",
-        "Their sum is the rate at which kinetic + potential energy grows.",
-    ],
+    "accelerations": "Return the angular accelerations of the links, rad/s^2, (n, ...).",
+    "reactions": """Return the force on each link where it begins, N, (n, 2, ...); x right, y down.
+
+    First F_01, of the ground on link 1, then F_12, of link 1 on link 2, and so on.
+    """,
+    "energies": "Return kinetic and potential energy, J, the latter 0 at the origin's height.",
+    "powers": """Return the power that each effect brings into the chain, W; negative if it takes.
+
+    Their sum is the rate at which kinetic + potential energy grows.
+    """,
 }
 
 
@@ -72,66 +64,48 @@ def module(derivation: Algebra) -> str:
     The scene's numbers stand at its top, by name; ``right_hand_side(t, y)`` is for SciPy's
     ``solve_ivp``; ``accelerations``, ``reactions``, ``energies`` and ``powers`` take ``t, q, qd``
     with any axes after that of the links.
-
-    Parameters
-    ----------
-    derivation : Algebra
-        The derivation of any scene.
     """
-    n, quantities = derivation.n, Quantities.of(derivation, TAKEN)
-    every = [p.symbol for p in derivation.symbols.parameters]
-    writer = NumPy(identifiers([*every, *quantities.symbols()], TAKEN))
-    numbers = constants(derivation, writer, "{} = ", "{!r}", "  # {}")
-    text = HEAD.format(
-        chain=chain_in_words(derivation).capitalize(), origin="\n".join(origin(derivation)), n=n,
-        constants="\n".join(numbers),
+    n, found = derivation.n, computations(derivation)
+    text = MODULE.format(
+        chain=chain_in_words(derivation).capitalize(), origin=origin(derivation), n=n,
+        constants=constants(derivation, "{} = {!r}", "# "),
     )  # fmt: skip
-    places = [f"[{i}, {k}]" for i in range(n) for k in (0, 1)]
-    text += _function(
-        derivation, writer, "accelerations", quantities.accelerations,
-        ["qdd = np.empty_like(q)"], [f"qdd[{i}]" for i in range(n)], "qdd",
-    )  # fmt: skip
-    text += _function(
-        derivation, writer, "reactions", quantities.reactions,
-        ["force = np.empty((n, 2, *q.shape[1:]))"], [f"force{place}" for place in places], "force",
-    )  # fmt: skip
-    text += _function(
-        derivation, writer, "energies", quantities.energies,
-        [], ["kinetic", "potential"], "kinetic, potential",
-    )  # fmt: skip
-    if quantities.powers:
-        text += _function(
-            derivation, writer, "powers", quantities.power,
-            ["power = {}"], [f'power["{name}"]' for name in quantities.powers], "power",
-        )  # fmt: skip
+    rates = [f"qdd[{i}]" for i in range(n)]
+    forces = [f"force[{i}, {k}]" for i in range(n) for k in (0, 1)]
+    powers = [f'power["{name}"]' for name in powers_by_name(derivation)]
+    energies = ["kinetic", "potential"]
+    for name, computation, made, results, returned in (
+        ("accelerations", found["accelerations"], "qdd = numpy.empty_like(q)", rates, "qdd"),
+        ("reactions", found["reactions"], "force = numpy.empty((n, 2, *q.shape[1:]))", forces,
+         "force"),
+        ("energies", found["energy"], "", energies, ", ".join(energies)),
+        ("powers", found["powers"], "power = {}", powers, "power"),
+    ):  # fmt: skip
+        if results:
+            text += FUNCTION.format(
+                name=name, documentation=DOCUMENTATION[name], returned=returned,
+                body="\n".join(_body(derivation, computation, made, results)),
+            )  # fmt: skip
     return text
 
 
-def _function(
-    derivation: Algebra, writer: NumPy, name: str, computation: Computation,
-    made: list[str], results: list[str], returned: str,
-) -> str:  # fmt: skip
-    """Write a function of t, q, qd."""
-    s = derivation.symbols
-    summary, *more = DOCUMENTATION[name]
-    lines = ["", "", f"def {name}(t, q, qd):", f'    """{summary}']
-    lines += ["", *(f"    {line}" for line in more), "    "] if more else []
-    lines[-1] += '"""'
-    lines.append("    q, qd = np.asarray(q, dtype=float), np.asarray(qd, dtype=float)")
+def _body(
+    derivation: Algebra, computation: Computation, made: str, results: list[str]
+) -> list[str]:
+    """Return the lines of a function of t, q, qd."""
+    s, write = derivation.symbols, NumPyPrinter().doprint
+    lines = []
     for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "accelerations(t, q, qd)")):
         if computation.needs & {*symbols}:
-            parts = ", ".join(map(writer.doprint, symbols))
-            lines.append(f"    {parts if len(symbols) > 1 else f'({parts},)'} = {whole}")
-    words = meanings(derivation)
-    for symbol, value in computation.assignments:
-        lines += [f"    # {words[symbol]}"] if symbol in words else []
-        lines += _assignment(writer.doprint(symbol), writer.doprint(value))
-    lines += [f"    {line}" for line in made]
-    for result, value in zip(results, computation.results, strict=True):
-        lines += _assignment(result, writer.doprint(value))
-    return "\n".join([*lines, f"    return {returned}"]) + "\n"
-
-
-def _assignment(name: str, value: str) -> list[str]:
-    lines = wrapped(f"{name} = {value}", "    ")
-    return lines if len(lines) == 1 else wrapped(f"{name} = ({value})", "    ")
+            lines.append(f"{', '.join(map(str, symbols))}, = {whole}")
+    lines += assigned(derivation, computation, write, "{} = {}", "# ")
+    lines += [made] * bool(made)
+    lines += [
+        f"{name} = {write(value)}" for name, value in zip(results, computation.results, strict=True)
+    ]
+    body = []
+    for line in lines:
+        name, _, value = line.partition(" = ")
+        own = wrapped(line, "    ")
+        body += own if len(own) == 1 else wrapped(f"{name} = ({value})", "    ")
+    return body

@@ -1,35 +1,28 @@
-"""The laws of the smooth effects in symbols, one file each, and why other effects have none."""
+"""The laws of the smooth effects in symbols, and why other effects have none."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from pendcore.derive.laws.driven_pivot import DrivenPivot
+from pendcore.derive.laws.bodies import driven_pivot, lock, payload, rotor_inertia
+from pendcore.derive.laws.couples import motor, torsional_spring, viscous_joint
 from pendcore.derive.laws.law import Definition, Law, LinkLoad, NotSmooth
-from pendcore.derive.laws.lock import Lock
-from pendcore.derive.laws.motor import Motor
-from pendcore.derive.laws.payload import Payload
-from pendcore.derive.laws.rod_drag import RodDrag
-from pendcore.derive.laws.rotor_inertia import RotorInertia
-from pendcore.derive.laws.torsional_spring import TorsionalSpring
-from pendcore.derive.laws.viscous_joint import ViscousJoint
+from pendcore.derive.laws.rod_drag import rod_drag
 from pendcore.derive.notation import Notation
 
-LAWS: dict[str, type[Law]] = {
-    "driven_pivot": DrivenPivot,
-    "lock": Lock,
-    "motor": Motor,
-    "payload": Payload,
-    "rod_drag": RodDrag,
-    "rotor_inertia": RotorInertia,
-    "torsional_spring": TorsionalSpring,
-    "viscous_joint": ViscousJoint,
-}
+LAWS: dict[str, Callable[[Any, Notation], Law]] = {
+    law.__name__: law
+    for law in (
+        driven_pivot, lock, motor, payload, rod_drag, rotor_inertia, torsional_spring,
+        viscous_joint,
+    )
+}  # fmt: skip
 """The laws, by the kind of effect."""
 
 OWN = "its law is a function, which has no symbols"
 USE_A_LAW = "use one of pendcore.effects that has a law in symbols"
+NOT_YET = "nobody has written its law in symbols yet", USE_A_LAW
 WITHOUT_LAW: dict[str, tuple[str, str]] = {
     "compiled_user": (OWN, USE_A_LAW),
     "dry_joint_friction": (
@@ -54,21 +47,19 @@ def laws_of(effects: Sequence[Any], notation: Notation) -> list[Law]:
     ValueError
         If an effect has no smooth law; the message says which one, why, and what to do instead.
     """
-    return [_law_of(i, effect, notation) for i, effect in enumerate(effects, start=1)]
-
-
-def _law_of(number: int, effect: Any, notation: Notation) -> Law:
-    try:
-        if effect.kind in WITHOUT_LAW:
-            raise NotSmooth(*WITHOUT_LAW[effect.kind])
-        if effect.kind not in LAWS:
-            raise NotSmooth("nobody has written its law in symbols yet", USE_A_LAW)
-        return LAWS[effect.kind](effect, notation)
-    except NotSmooth as refused:
-        raise ValueError(
-            f"effect {number}, {effect!r}: cannot be derived in symbols: {refused.reason}; "
-            f"{refused.remedy}, or leave it to pendcore.simulate"
-        ) from None
+    laws = []
+    for number, effect in enumerate(effects, start=1):
+        try:
+            if effect.kind not in LAWS:
+                raise NotSmooth(*WITHOUT_LAW.get(effect.kind, NOT_YET))
+            laws.append(LAWS[effect.kind](effect, notation))
+        except NotSmooth as refused:
+            reason, remedy = refused.args
+            raise ValueError(
+                f"effect {number}, {effect!r}: cannot be derived in symbols: {reason}; {remedy}, "
+                "or leave it to pendcore.simulate"
+            ) from None
+    return laws
 
 
 __all__ = ["LAWS", "WITHOUT_LAW", "Definition", "Law", "LinkLoad", "laws_of"]

@@ -1,10 +1,12 @@
-"""The interface of the laws of smooth effects, in symbols; most laws define one of its parts."""
+"""What a smooth effect does, in symbols."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from sympy import Expr, Integer, Symbol
+from sympy import Expr, Symbol, sin
 
 from pendcore.derive.chain import Chain, Vector
 from pendcore.derive.notation import Notation
@@ -14,23 +16,11 @@ class NotSmooth(Exception):
     """The effect has no law that is smooth; holds the reason, and what to do instead."""
 
     def __init__(self, reason: str, remedy: str) -> None:
-        super().__init__(f"{reason}: {remedy}")
-        self.reason = reason
-        self.remedy = remedy
+        super().__init__(reason, remedy)
 
 
 class LinkLoad(NamedTuple):
-    """A force on a link, and its moment.
-
-    Attributes
-    ----------
-    link : int
-        The link, counted from 1.
-    force : (Expr, Expr)
-        N; x right, y down.
-    moment : Expr
-        About the joint where the link begins, N m.
-    """
+    """A force on a link (counted from 1), N, and its moment about where the link begins, N m."""
 
     link: int
     force: Vector
@@ -45,61 +35,63 @@ class Definition(NamedTuple):
     meaning: str
 
 
+@dataclass(frozen=True)
 class Law:
-    """The law of an effect that does nothing; each law overrides what its effect does.
+    """What an effect does; most laws have one of these parts.
 
-    Parameters
+    Attributes
     ----------
     effect : pendcore.effects.Effect
-        The effect, with its numbers.
-    notation : Notation
-        Where the law puts the symbols of its parameters.
+        The effect.
+    statement : str
+        What it does, in a sentence with the law's formula between dollars.
+    couple : function of (phi, w)
+        Torque on the link beyond the effect's joint, N m; phi and w are the joint's angle and rate.
+    stored : function of phi
+        Energy that the couple stores, J; without it the couple does work.
+    definitions : function of the chain
+        Symbols in which the load and the power are written, each defined by those before it.
+    load : LinkLoad
+        A force on a link.
+    power : function of (chain, ground_force)
+        Power that the effect brings into the chain, W, besides that of its couple; ``ground_force``
+        is the force of the ground on link 1, N.
+    armature : Expr
+        Moment of inertia of a rotor that turns with the effect's joint, kg m^2.
+    payload : (Expr, Expr)
+        Mass (kg) and moment of inertia (kg m^2) of a body at the tip.
+    pivot : (Expr, Expr)
+        Position of the pivot over time, m.
+    locks : bool
+        Whether the effect locks its joint.
     """
 
-    def __init__(self, effect: Any, notation: Notation) -> None:
-        self.effect = effect
-        self.notation = notation
+    effect: Any
+    statement: str
+    couple: Callable[[Expr, Expr], Expr] | None = None
+    stored: Callable[[Expr], Expr] | None = None
+    definitions: Callable[[Chain], tuple[Definition, ...]] = lambda chain: ()
+    load: LinkLoad | None = None
+    power: Callable[[Chain, Vector], Expr] | None = None
+    armature: Expr | None = None
+    payload: tuple[Expr, Expr] | None = None
+    pivot: Vector | None = None
+    locks: bool = False
 
-    def sentence(self, notation: Notation) -> str:
-        """Return what a derivation says of the effect; formulas between dollars."""
-        raise NotImplementedError
 
-    def pivot(self) -> Vector | None:
-        """Position of the pivot over time, if the effect moves it, m."""
-        return None
+def sinusoid(
+    s: Notation, wave: Any, amplitude: tuple[str, str], unit: str, of: str, meaning: str
+) -> Expr:
+    """Return the law of a `pendcore.effects.Sinusoid`, with symbols for its numbers.
 
-    def couple(self, chain: Chain) -> Expr | None:
-        """Torque of the effect on the link beyond its joint, without that of rotors, N m."""
-        return None
-
-    def definitions(self, chain: Chain) -> tuple[Definition, ...]:
-        """Symbols in which the loads are written, each defined by those before it."""
-        return ()
-
-    def load(self, chain: Chain) -> LinkLoad | None:
-        """Force on a link and its moment, in the symbols of `definitions`."""
-        return None
-
-    def armature(self) -> tuple[int, Expr] | None:
-        """Joint, and moment of inertia of a rotor that turns with the joint, kg m^2."""
-        return None
-
-    def payload(self) -> tuple[Expr, Expr] | None:
-        """Mass (kg) and moment of inertia (kg m^2) of a body at the tip."""
-        return None
-
-    def lock(self) -> int | None:
-        """The joint that the effect locks."""
-        return None
-
-    def potential_energy(self, chain: Chain) -> Expr:
-        """Energy that the effect stores, J."""
-        return Integer(0)
-
-    def power(self, chain: Chain, ground_force: Vector) -> Expr | None:
-        """Power that the effect brings into the chain, W, in the symbols of `definitions`.
-
-        ``ground_force`` is the force of the ground on link 1, N. The power is None if the effect
-        does no work, or stores its work as energy.
-        """
-        return None
+    ``amplitude`` is its symbol in text and in LaTeX; ``of`` marks the other symbols.
+    """
+    size = s.parameter(*amplitude, wave.amplitude, unit, f"amplitude of {meaning}")
+    angle = s.t * s.parameter(
+        f"Omega_{of}", rf"\Omega_{{{of}}}", wave.angular_frequency, "rad/s",
+        f"angular frequency of {meaning}",
+    )  # fmt: skip
+    if wave.phase != 0.0:
+        name = rf"\psi_{{{of}}}"
+        angle += s.parameter(f"psi_{of}", name, wave.phase, "rad", f"phase of {meaning}")
+    return size * sin(angle)

@@ -9,24 +9,29 @@ from sympy import Expr, Symbol
 
 from pendcore.derive.algebra import Algebra
 from pendcore.derive.laws import LinkLoad
+from pendcore.derive.notation import DOTTED
 from pendcore.derive.step import Equation, Formula, Step
 from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
 
+_UPWARD = "as if $y$ pointed upward. It points downward, and the weight is positive."
+ERRATA = {
+    "2.2": f"The textbook prints $-m_{{1}} g L_{{1}}/2 \\cos q_{{1}}$, {_UPWARD}",
+    "y of 2.5": f"The textbook prints $-m_{{2}} g$, {_UPWARD}",
+    "2.5": "The textbook prints $m$ for $m_{2}$.",
+    "2.7": f"The textbook prints $-m_{{2}} g$, {_UPWARD}",
+    "2.8": "The textbook prints both terms with the opposite sign, which is not what the "
+    "determinant in (2.5) gives.",
+    "2.9": "The textbook prints the same. It is right for $y$ downward, but does not follow from "
+    "the (2.7) printed there.",
+    "2.10": "The textbook prints $m_{2} L_{1}^{2}/3$ on the left, for $m_{1} L_{1}^{2}/3$, and "
+    "$-m_{1} g L_{1}/2 \\cos q_{1}$.",
+    "2.11": "The textbook prints the right side with the opposite sign, which it has from (2.8).",
+}
+"""What the textbook prints otherwise; docs/reference/errata.md shows each by computation."""
+
 
 class Page:
-    """Steps as they are written.
-
-    Attributes
-    ----------
-    derivation : Algebra
-        The equations that the steps derive.
-    is_textbook : bool
-        Whether the equations are the textbook's: two uniform rods and nothing else.
-    steps : list of Step
-        The steps written so far.
-    links : dict
-        The number of the step with the equations of each link written so far.
-    """
+    """Steps as they are written, with the number of the next and the names of what is in them."""
 
     def __init__(self, derivation: Algebra) -> None:
         self.derivation = derivation
@@ -34,27 +39,22 @@ class Page:
         self.s = derivation.symbols
         self.chain = derivation.chain
         self.equations = derivation.equations
-        self.motion = derivation.motion
-        links = derivation.scene.links
-        self.is_uniform = not any(x.particulars().keys() - {"mass", "length"} for x in links)
-        self.is_textbook = self.n == 2 and self.is_uniform and not derivation.scene.effects
+        scene = derivation.scene
+        links = [link.particulars().keys() for link in scene.links]
+        self.is_uniform = all(given <= {"mass", "length"} for given in links)
+        self.is_textbook = self.n == 2 and self.is_uniform and not scene.effects
         self.steps: list[Step] = []
-        self.links: dict[int, int] = {}
 
     def step(self, title: str, text: str, *equations: Equation) -> None:
         """Write a step."""
         self.steps.append(Step(len(self.steps) + 1, title, text, equations))
 
     def equation(
-        self,
-        lhs: Expr | Formula,
-        rhs: Expr | Formula,
-        number: str | None = None,
-        remark: str = "",
+        self, lhs: Expr | Formula, rhs: Expr | Formula, number: str | None = None, erratum: str = ""
     ) -> Equation:
         """Return an equation; it keeps its number for two links, its remark for the textbook's."""
-        number = number if self.n == 2 else None
-        return Equation(lhs, rhs, number, remark if self.is_textbook else "", self.s)
+        remark = ERRATA.get(erratum or number or "", "") if self.is_textbook else ""
+        return Equation(lhs, rhs, number if self.n == 2 else None, remark, self.s)
 
     def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
         """Return a symbol that only names a side of an equation."""
@@ -62,89 +62,66 @@ class Page:
 
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
-        if joint <= min(self.n, 2) <= self.n <= 2:
-            name = ("A", "B", "D")[joint]
-            return Formula(name, name)
-        return Formula("A", "A") if joint == 0 else Formula(f"P{joint}", f"P_{{{joint}}}")
+        return Formula("ABD"[joint] if self.n <= 2 or joint == 0 else f"P_{{{joint}}}")
 
     @staticmethod
     def center(link: int) -> Formula:
         """Return the name of a mass centre."""
-        return Formula(f"C{link}", f"C_{{{link}}}")
+        return Formula(f"C_{{{link}}}")
 
     def coordinate(self, axis: str, point: Formula, dots: int = 0) -> Symbol:
         """Return x_C1, or with dots its velocity and acceleration."""
-        name = f"{axis}{'d' * dots}_{point.text}"
-        letter = {0: axis, 1: rf"\dot{{{axis}}}", 2: rf"\ddot{{{axis}}}"}[dots]
-        rank = (ANGLE, RATE, ACCELERATION)[dots]
-        return self.symbol(name, f"{letter}_{{{point.latex}}}", rank)
+        (mark, shown), rank = [*DOTTED.items()][dots], (ANGLE, RATE, ACCELERATION)[dots]
+        name = f"{axis}{mark}_{point.text}"
+        return self.symbol(name, f"{shown.format(axis)}_{{{point}}}", rank)
 
     def moment_of_inertia(self, link: int) -> Symbol:
-        """Return I_C1."""
+        """Return I_C1; for link 0 I_A, that of link 1 about the pivot."""
+        if link == 0:
+            return self.symbol("I_A", "I_{A}", MASS)
         return self.symbol(f"I_C{link}", f"I_{{C_{{{link}}}}}", MASS, link)
 
     @staticmethod
-    def position(of: Formula, origin: Formula | None = None) -> Formula:
-        """Return a vector between points, such as r_C1, or r_C1B from C1 to B."""
-        before = origin or Formula("", "")
-        return Formula(f"r_{before.text}{of.text}", rf"\mathbf{{r}}_{{{before.latex}{of.latex}}}")
-
-    @staticmethod
-    def vector(letter: str, index: Formula | str | int) -> Formula:
-        """Return a vector: a_C1, alpha_1, G_1, F_12."""
-        text, latex = (index.text, index.latex) if isinstance(index, Formula) else (index, index)
-        name = {"alpha": r"\boldsymbol{\alpha}", "omega": r"\boldsymbol{\omega}"}.get(
-            letter, rf"\mathbf{{{letter}}}"
-        )
-        between = "_" if isinstance(index, Formula) else ""
-        return Formula(f"{letter}{between}{text}", f"{name}_{{{latex}}}")
+    def vector(letter: str, index: object) -> Formula:
+        """Return a vector: a_C1, alpha_1, G_1, F_12; r_C1B from C1 to B."""
+        bold = rf"\boldsymbol{{\{letter}}}" if len(letter) > 1 else rf"\mathbf{{{letter}}}"
+        return Formula(f"{bold}_{{{index}}}")
 
     def load(self, load: LinkLoad) -> Formula:
         """Return the name of a force on a link, D_2; a second force there gets another name."""
-        vector = self.vector("D", load.link)
         count = 1 + [x for x in self.equations.loads if x.link == load.link].index(load)
-        if count == 1:
-            return vector
-        return Formula(f"{vector.text}__{count}", f"{vector.latex}^{{({count})}}")
+        mark = f"^{{({count})}}" if count > 1 else ""
+        return Formula(self.vector("D", load.link) + mark)
 
     def along(self, unit: str, value: Any) -> Formula:
         """Return a value along a unit vector: ``m1*g j``."""
-        text, latex = self.s.text(value), self.s.latex(value)
-        if getattr(value, "is_Add", False):
-            text, latex = f"({text})", rf"\left({latex}\right)"
-        return Formula(f"{text} {unit}", rf"{latex} \, \mathbf{{{unit}}}")
+        return self.scaled(value, Formula(rf"\, \mathbf{{{unit}}}"))
 
-    def scaled(self, factor: Expr, vector: Formula) -> Formula:
+    def scaled(self, factor: Any, vector: Formula) -> Formula:
         """Return a vector times a factor: ``m1 a_C1``."""
-        text, latex = self.s.text(factor), self.s.latex(factor)
-        if factor.is_Add:
-            text, latex = f"({text})", rf"\left({latex}\right)"
-        return Formula(f"{text} {vector.text}", f"{latex} {vector.latex}")
+        latex = self.s.latex(factor)
+        if getattr(factor, "is_Add", False):
+            latex = rf"\left({latex}\right)"
+        return Formula(f"{latex} {vector}")
 
-    @staticmethod
-    def cross(arm: Formula, force: Formula) -> Formula:
-        """Return a moment: arm x force."""
-        return Formula(f"{arm.text} x {force.text}", rf"{arm.latex} \times {force.latex}")
+    def moment(self, arm: str, force: Formula) -> Formula:
+        """Return a moment: arm x force; the arm is named by the points between which it is."""
+        return Formula(rf"{self.vector('r', arm)} \times {force}")
 
     def determinant(self, arm: tuple[Expr, Expr], force: tuple[Expr, Expr]) -> Formula:
         """Return the cross product of two vectors in the plane, as the textbook prints it."""
-        rows = [[self.s.text(x) for x in row] for row in (arm, force)]
-        shown = [[self.s.latex(x) for x in row] for row in (arm, force)]
-        text = "; ".join(f"{x}, {y}, 0" for x, y in rows)
-        latex = r" \\ ".join(f"{x} & {y} & 0" for x, y in shown)
-        head = r"\mathbf{i} & \mathbf{j} & \mathbf{k}"
-        return Formula(
-            f"det[i, j, k; {text}]", rf"\begin{{vmatrix}} {head} \\ {latex} \end{{vmatrix}}"
-        )
+        rows = [[rf"\mathbf{{{unit}}}" for unit in "ijk"]]
+        rows += [[*map(self.s.latex, row), "0"] for row in (arm, force)]
+        latex = r" \\ ".join(" & ".join(row) for row in rows)
+        return Formula(rf"\begin{{vmatrix}} {latex} \end{{vmatrix}}")
 
 
 def total(terms: Iterable[Formula]) -> Formula:
     """Return a sum; a term that begins with a minus is subtracted."""
-    texts: list[str] = []
-    pieces: list[str] = []
-    for term in terms:
-        sign = "-" if term.text.startswith("-") else "+"
-        text, latex = term.text.removeprefix("-"), term.latex.removeprefix("-")
-        texts.append(f"{sign} {text}" if texts else term.text)
-        pieces.append(f"{sign} {latex}" if pieces else term.latex)
-    return Formula(" ".join(texts) or "0", " ".join(pieces) or "0", tuple(pieces))
+    return Formula(" + ".join(terms).replace("+ -", "- "))
+
+
+def listed(words: Iterable[str]) -> str:
+    """Return ``a``, ``a and b``, ``a, b and c``."""
+    *most, last = words
+    return f"{', '.join(most)} and {last}" if most else last

@@ -14,7 +14,8 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pendcore.derive.report.document import Document, Reader
+from pendcore.derive.document import Document, Reader
+from pendcore.derive.report.drawing import save
 
 ENGINES = ("xelatex", "lualatex", "pdflatex")
 """LaTeX engines, in the order in which they are tried."""
@@ -68,30 +69,17 @@ def latex_engine() -> str | None:
 
 
 def page(document: Document) -> str:
-    """Return a document as one page of HTML.
-
-    Raises
-    ------
-    ConversionError
-        If pandoc fails.
-    """
+    """Return a document as one page of HTML; raise a ConversionError if pandoc fails."""
+    style = f"<style>\n{STYLE.read_text('utf-8')}</style>\n"
     with TemporaryDirectory() as place:
-        folder = Path(place)
-        for drawing in document.drawings:
-            drawing.save(drawing.path(folder, Reader.HTML))
-        header = folder / "style.html"
-        header.write_text(f"<style>\n{STYLE.read_text('utf-8')}</style>\n", encoding="utf-8")
-        made = _pandoc(
-            document, Reader.HTML, folder, "--to=html5", "--mathml", f"--include-in-header={header}"
-        )
+        made = _pandoc(document, Reader.HTML, Path(place), style, "--to=html5", "--mathml")
         text = made.read_text("utf-8")
 
         def embedded(found: re.Match[str]) -> str:
-            picture = base64.b64encode((folder / found[1]).read_bytes()).decode()
+            picture = base64.b64encode((made.parent / found[1]).read_bytes()).decode()
             return f'src="data:image/svg+xml;base64,{picture}"'
 
-        text = _for_browsers(text)
-        return re.sub(r'src="([\w-]+\.svg)"', embedded, text)
+        return re.sub(r'src="([\w-]+\.svg)"', embedded, _for_browsers(text))
 
 
 def _for_browsers(text: str) -> str:
@@ -103,48 +91,35 @@ def _for_browsers(text: str) -> str:
         known, text = text, LOW_BRACKETS.sub(
             r'<mrow><mo stretchy="false">(</mo>\1<mo stretchy="false">)</mo></mrow>', text
         )  # fmt: skip
-    text = re.sub(
-        r"<mo>(sin|cos)</mo>(?=<mrow><mo)", r'<mo lspace=".17em" rspace="0">\1</mo>', text
-    )
-    text = re.sub(r"<mo>(sin|cos)</mo>", r'<mo lspace=".17em" rspace=".17em">\1</mo>', text)
+    function = r'<mo lspace=".17em" rspace="{}">\1</mo>'
+    text = re.sub(r"<mo>(sin|cos)</mo>(?=<mrow><mo)", function.format("0"), text)
+    text = re.sub(r"<mo>(sin|cos)</mo>", function.format(".17em"), text)
     return re.sub(r"</math>(?=[,.;:])", "</math>\N{WORD JOINER}", text)
 
 
-def pdf(document: Document, path: Path, engine: str) -> None:
-    """Write a document as a PDF.
-
-    Raises
-    ------
-    ConversionError
-        If pandoc or the engine fails.
-    """
+def pdf(document: Document, engine: str, path: Path) -> None:
+    """Write a document as a PDF; raise a ConversionError if pandoc or the engine fails."""
     with TemporaryDirectory() as place:
-        folder = Path(place)
-        for drawing in document.drawings:
-            drawing.save(drawing.path(folder, Reader.LATEX))
-        (folder / "preamble.tex").write_text(PREAMBLE, encoding="utf-8")
-        made = _pandoc(
-            document, Reader.LATEX, folder, "--to=latex", f"--pdf-engine={engine}",
-            f"--include-in-header={folder / 'preamble.tex'}", suffix="pdf",
-        )  # fmt: skip
-        shutil.copyfile(made, path)
+        options = "--to=latex", f"--pdf-engine={engine}"
+        shutil.copyfile(_pandoc(document, Reader.PDF, Path(place), PREAMBLE, *options), path)
 
 
-def _pandoc(
-    document: Document, reader: Reader, folder: Path, *options: str, suffix: str = "html"
-) -> Path:
+def _pandoc(document: Document, reader: Reader, folder: Path, header: str, *options: str) -> Path:
     """Let pandoc write into a folder where the figures are; return the file."""
-    source, made = folder / "report.md", folder / f"report.{suffix}"
+    for drawing in document.drawings:
+        save(drawing, folder / drawing.file(reader))
+    source, head = folder / "report.md", folder / "header"
+    made = folder / f"report.{'html' if reader is Reader.HTML else 'pdf'}"
     source.write_text(document.markdown(reader), encoding="utf-8")
+    head.write_text(header, encoding="utf-8")
     command = [
         "pandoc", "--standalone", "--from=markdown", "--columns=1000",
-        f"--metadata=pagetitle:{document.title}",
-        f"--metadata=title:{document.title}", "--metadata=lang:en", *options, f"--output={made}",
+        f"--metadata=pagetitle:{document.title}", f"--metadata=title:{document.title}",
+        "--metadata=lang:en", f"--include-in-header={head}", f"--output={made}", *options,
         str(source),
     ]  # fmt: skip
-    done = subprocess.run(
-        command, capture_output=True, text=True, cwd=folder, env={**os.environ, "LC_ALL": "C.UTF-8"}
-    )
+    surroundings = {**os.environ, "LC_ALL": "C.UTF-8"}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=surroundings)
     if done.returncode:
         raise ConversionError(f"pandoc: {done.stderr.strip() or 'failed without a word'}")
     return made

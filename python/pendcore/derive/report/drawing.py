@@ -9,15 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
-from pendcore._messages.arguments import Floats
+from pendcore.derive.document import Drawing
 from pendcore.derive.report.labels import Label, place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+Floats = npt.NDArray[np.float64]
 
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
@@ -42,20 +46,20 @@ def lettering() -> AbstractContextManager[None]:
     return mpl.rc_context(_FONT)
 
 
+def save(drawing: Drawing, path: Path) -> None:
+    """Write a picture into a file, of the kind that its suffix says, the same every time."""
+    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
+    with lettering():
+        drawing.figure.draw_without_rendering()
+        drawing.figure.set_layout_engine("none")  # every picture has the first one's layout
+        drawing.figure.savefig(path, dpi=150, metadata=dates)
+
+
 @dataclass(slots=True)
 class Sketch:
-    """A sheet to draw on.
+    """A sheet to draw on; ``size`` is the length by which symbols are scaled, m.
 
-    Attributes
-    ----------
-    axes : matplotlib.axes.Axes
-        Where to draw.
-    size : float
-        The length by which symbols are scaled, m.
-    drawn : list of (ndarray (k, 2), float)
-        Points of all lines, and half the width of each line, m: no name can be there.
-    labels : list of Label
-        Names that `finish` places.
+    ``drawn`` are points of all lines, and half the width of each line, m: no name can be there.
     """
 
     axes: Axes
@@ -66,6 +70,13 @@ class Sketch:
     def line(self, start: Floats, end: Floats, half: float = 0.0) -> None:
         """Remember that a straight line is drawn; ``half`` is half its width, m."""
         self.drawn.append((np.linspace(start, end, 60), half))
+
+    def disc(self, at: Floats, radius: float, **how: Any) -> None:
+        """Draw a disc; the radius is a share of the size."""
+        from matplotlib.patches import Circle
+
+        self.axes.add_patch(Circle(tuple(at), radius * self.size, **{"ec": BLACK} | how))
+        self.drawn.append((np.atleast_2d(at), radius * self.size))
 
 
 def sketch(axes: Axes, size: float) -> Sketch:
@@ -85,8 +96,7 @@ def finish(on: Sketch, *, above: float = 0.0, shrink: bool = False) -> None:
     points = np.vstack([points for points, _ in on.drawn])
     low, high = points.min(axis=0), points.max(axis=0)
     middle, span = (low + high) / 2, np.maximum(high - low, 0.4 * on.size)
-    figure = on.axes.get_figure(root=True)
-    assert figure is not None
+    figure: Any = on.axes.get_figure(root=True)
     margin = np.array([2 * MARGIN, 2 * MARGIN + above])
     sheet = np.multiply(on.axes.get_position(original=True).size, figure.get_size_inches()) * 72.0
     scale = float(((sheet - margin) / span).min())
@@ -109,9 +119,8 @@ def direction(angle: float) -> Floats:
 def clear_direction(taken: Iterable[float], prefer: float = np.pi) -> Floats:
     """Return the direction that is farthest from all those taken (angles, rad)."""
     candidates = prefer + np.arange(24) * (np.pi / 12)
-    away = np.array([np.abs(np.angle(np.exp(1j * (candidates - angle)))) for angle in taken])
-    room = np.minimum(away.min(axis=0), 2.0) if len(away) else np.ones(24)
-    return direction(float(candidates[np.argmax(room)]))
+    away = [np.abs(np.angle(np.exp(1j * (candidates - angle)))) for angle in taken]
+    return direction(float(candidates[np.argmax(np.minimum(np.min(away, axis=0), 2.0))]))
 
 
 def name(
@@ -127,14 +136,13 @@ def rod(on: Sketch, start: Floats, end: Floats) -> None:
     from matplotlib.patches import FancyBboxPatch
     from matplotlib.transforms import Affine2D
 
-    half = 0.026 * on.size
-    along = end - start
-    length = float(np.hypot(*along))
-    turned = Affine2D().rotate(float(np.arctan2(along[1], along[0]))).translate(*start)
+    half, (x, y) = 0.026 * on.size, end - start
     bar = FancyBboxPatch(
-        (-half, -half), length + 2 * half, 2 * half, boxstyle=f"round,pad=0,rounding_size={half}",
+        (-half, -half), np.hypot(x, y) + 2 * half, 2 * half,
+        boxstyle=f"round,pad=0,rounding_size={half}",
         facecolor=STEEL, edgecolor=BLACK, linewidth=1.1, zorder=3,
     )  # fmt: skip
+    turned = Affine2D().rotate(float(np.arctan2(y, x))).translate(*start)
     bar.set_transform(turned + on.axes.transData)
     on.axes.add_patch(bar)
     on.line(start, end, half)
@@ -142,11 +150,7 @@ def rod(on: Sketch, start: Floats, end: Floats) -> None:
 
 def pin(on: Sketch, at: Floats) -> None:
     """Draw a joint."""
-    from matplotlib.patches import Circle
-
-    on.axes.add_patch(
-        Circle(tuple(at), 0.017 * on.size, facecolor="white", edgecolor=BLACK, lw=1.1, zorder=6)
-    )
+    on.disc(at, 0.017, facecolor="white", lw=1.1, zorder=6)
 
 
 def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
@@ -154,31 +158,27 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
     from matplotlib.patches import Polygon
 
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
-    x, y = at
-    base = np.array([[x - 2 * a, y - b], [x + 2 * a, y - b]])
-    on.line(base[0], base[1])
-    on.line(base[0] - [0.0, 0.39 * b], base[1] + [0.1 * a, -0.39 * b])
-    for side in (-a, a):
-        on.line(at, at + np.array([side, -b]))
-    on.axes.add_patch(
-        Polygon([(x, y), (x - a, y - b), (x + a, y - b)], facecolor="white", ec=BLACK, lw=1.1)
-    )
-    on.axes.plot([x - 2 * a, x + 2 * a], [y - b, y - b], color=BLACK, lw=1.4)
+    corners = at + np.array([[0.0, 0.0], [-a, -b], [a, -b]])
+    base, hatch = at + np.array([[-2 * a, -b], [2 * a, -b]]), np.array([0.55 * a, -0.39 * b])
+    on.axes.add_patch(Polygon(corners, facecolor="white", ec=BLACK, lw=1.1))
+    on.axes.plot(*base.T, color=BLACK, lw=1.4)
     for k in np.linspace(-1.75, 1.75, 8):
-        on.axes.plot(
-            [x + k * a, x + (k + 0.55) * a], [y - b, y - b - 0.39 * b], color=BLACK, lw=0.8
-        )
+        start = at + np.array([k * a, -b])
+        on.axes.plot(*np.array([start, start + hatch]).T, color=BLACK, lw=0.8)
+    on.line(base[0], base[1])
+    on.line(base[0] + hatch, base[1] + hatch)
+    for corner in corners[1:]:
+        on.line(at, corner)
 
 
 def mass_center(on: Sketch, at: Floats) -> None:
     """Draw a mass centre: a disc in quarters."""
-    from matplotlib.patches import Circle, Wedge
+    from matplotlib.patches import Wedge
 
-    radius = 0.022 * on.size
-    on.drawn.append((np.atleast_2d(at), radius))
-    on.axes.add_patch(Circle(tuple(at), radius, facecolor="white", ec=BLACK, lw=0.9, zorder=5))
+    on.disc(at, 0.022, facecolor="white", lw=0.9, zorder=5)
     for first in (0, 180):
-        on.axes.add_patch(Wedge(tuple(at), radius, first, first + 90, color=BLACK, zorder=5))
+        quarter = Wedge(tuple(at), 0.022 * on.size, first, first + 90, color=BLACK, zorder=5)
+        on.axes.add_patch(quarter)
 
 
 def arrow(
@@ -189,23 +189,19 @@ def arrow(
     color: str = BLACK,
     *,
     arriving: bool = False,
-    **how: Any,
+    zorder: int = 7,
+    lw: float = 1.5,
 ) -> None:
     """Draw an arrow from a place (or arriving there), with its name at the free end."""
-    if arriving:
-        start = start - along
+    start = start - along if arriving else start
     end = start + along
-    on.axes.annotate(
-        "", xy=tuple(end), xytext=tuple(start), zorder=how.pop("zorder", 7),
-        arrowprops={"arrowstyle": "-|>,head_width=0.22,head_length=0.5", "color": color, "lw": 1.5,
-                    "shrinkA": 0, "shrinkB": 0, "mutation_scale": 13, **how},
-    )  # fmt: skip
+    _head(on, start, end, color, zorder, 13, lw)
     on.line(start, end)
     head = end - 0.04 * on.size * along / np.hypot(*along)
     on.drawn.append((head[None], 0.012 * on.size))
     if text:
-        free = start if arriving else end
-        name(on, [free, (start + end) / 2], text, -along if arriving else along, color=color)
+        free, towards = (start, -along) if arriving else (end, along)
+        name(on, [free, (start + end) / 2], text, towards, color=color)
 
 
 def turning_arrow(
@@ -213,27 +209,29 @@ def turning_arrow(
 ) -> None:
     """Draw an arrow around a place, from one angle to another (rad), with its name outside."""
     angles = np.linspace(*span, 60)
-    x, y = at[:, None] + radius * on.size * np.array([np.cos(angles), np.sin(angles)])
-    on.axes.plot(x[:-2], y[:-2], color=color, lw=1.1, zorder=4)
-    on.axes.annotate(
-        "", xy=(x[-1], y[-1]), xytext=(x[-5], y[-5]), zorder=4,
-        arrowprops={"arrowstyle": "-|>,head_width=0.18,head_length=0.4", "color": color, "lw": 1.1,
-                    "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11},
-    )  # fmt: skip
-    on.drawn.append((np.stack([x, y], axis=1), 0.006 * on.size))
-    places = np.stack([x, y], axis=1)[[30, 20, 40, 10]]
-    name(on, places, text, direction(float(np.mean(span))), color=color)
+    points = at + radius * on.size * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    on.axes.plot(*points[:-2].T, color=color, lw=1.1, zorder=4)
+    _head(on, points[-5], points[-1], color, 4, 11, 1.1)
+    on.drawn.append((points, 0.006 * on.size))
+    name(on, points[[30, 20, 40, 10]], text, direction(float(np.mean(span))), color=color)
+
+
+def _head(
+    on: Sketch, start: Floats, end: Floats, color: str, zorder: int, size: int, lw: float
+) -> None:
+    how = {"arrowstyle": "-|>,head_width=0.2,head_length=0.5", "color": color, "lw": lw,
+           "shrinkA": 0, "shrinkB": 0, "mutation_scale": size}  # fmt: skip
+    on.axes.annotate("", xy=tuple(end), xytext=tuple(start), zorder=zorder, arrowprops=how)
 
 
 def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float) -> None:
     """Mark the angle of a link: a dashed line along +x, and an arc unless the angle is small."""
-    reach = 0.3 * on.size
-    x, y = at
-    on.axes.plot([x, x + reach], [y, y], color=ANGLE, lw=0.9, ls=(0, (5, 3)), zorder=2)
-    on.line(at, at + np.array([reach, 0.0]))
+    reach = np.array([0.3 * on.size, 0.0])
+    on.axes.plot(*np.array([at, at + reach]).T, color=ANGLE, lw=0.9, ls=(0, (5, 3)), zorder=2)
+    on.line(at, at + reach)
     shown = float(np.angle(np.exp(1j * angle)))
     if abs(shown) < np.radians(8):
-        name(on, at + np.array([0.6 * reach, 0.0]), text, np.array([0.0, -1.0]), color=ANGLE)
+        name(on, at + 0.6 * reach, text, np.array([0.0, -1.0]), color=ANGLE)
         return
     turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=ANGLE)
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
+from sympy import Expr
 
-from pendcore._messages.arguments import Floats
-from pendcore._scene.scene import Scene
+from pendcore.derive.chain import Vector
+from pendcore.derive.narration.page import Page
 from pendcore.derive.report import drawing
-from pendcore.derive.report.drawing import Sketch, direction, name
+from pendcore.derive.report.drawing import Floats, Sketch, direction, name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,72 +23,15 @@ TITLE = 18.0
 """Height of the line above a body, points of print."""
 
 
-class Reaction(NamedTuple):
-    """The force in a joint as an unknown: its components, and on which link they act as drawn.
+def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Figure:
+    """Draw each link at its angle, rad, with what acts on it, or alone, as the page names it all.
 
-    Attributes
-    ----------
-    x, y : str
-        LaTeX of the components.
-    on_outer : bool
-        Whether positive components push the link that begins at the joint along +x and +y; the
-        link before it is then pushed the other way. In the textbook F_01 does, and F_21 does not.
-    """
-
-    x: str
-    y: str
-    on_outer: bool
-
-
-class Acting(NamedTuple):
-    """What acts on links besides weights and joint forces, as LaTeX.
-
-    Attributes
-    ----------
-    couples : dict
-        By joint: the couple on the link beyond the joint; the opposite couple acts on the link
-        before it.
-    loads : tuple of (int, str)
-        The number of a link and the name of a force across it, for each such force.
-    payload : str or None
-        Mass of the body at the tip.
-    payload_couple : str
-        Couple on that body; empty if there is none.
-    """
-
-    couples: dict[int, str]
-    loads: tuple[tuple[int, str], ...] = ()
-    payload: str | None = None
-    payload_couple: str = ""
-
-
-def free_bodies(
-    scene: Scene,
-    q: Sequence[float],
-    points: Sequence[str],
-    reactions: Sequence[Reaction],
-    acting: Acting,
-) -> Figure:
-    """Draw each link at its angle, with what acts on it; arrows show what counts as positive.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene whose links are drawn.
-    q : sequence of float, (n,)
-        Absolute angles, rad.
-    points : sequence of str, (n + 1,)
-        The names of the pivot, the joints and the tip.
-    reactions : sequence of Reaction
-        The forces in the joints, from the pivot outwards, and that of the payload if there is one;
-        empty to draw the bodies without anything that acts on them.
-    acting : Acting
-        What else acts.
+    Arrows show what counts as positive.
     """
     from matplotlib.figure import Figure
 
-    n = len(q)
-    bodies = n + (acting.payload is not None)
+    has_payload = page.equations.payload is not None
+    bodies = page.n + has_payload
     rows = -(-bodies // A_ROW)
     columns = -(-bodies // rows)
     figure = Figure(figsize=(3.3 * columns, 3.3 * rows))
@@ -95,115 +39,98 @@ def free_bodies(
     sheets = figure.subplots(rows, columns, squeeze=False, gridspec_kw=whole).ravel()
     for sheet in sheets[bodies:]:
         sheet.set_axis_off()
-    for i, angle in enumerate(q):
-        on = _link(sheets[i], scene, i, angle, points)
-        if reactions:
-            _on_link(on, scene.links[i].length, i + 1, angle, reactions, acting)
-        _finished(on, f"link {i + 1}")
-    if acting.payload is not None:
-        on = drawing.sketch(sheets[n], 1.0)
-        _payload(on, points[-1], reactions[-1] if reactions else None, acting)
-        _finished(on, "payload")
+    titles = [f"link {i}" for i in range(1, page.n + 1)] + ["payload"] * has_payload
+    for i, (sheet, title) in enumerate(zip(sheets, titles, strict=False), start=1):
+        if i <= page.n:
+            on = _link(sheet, page, i, q[i - 1], forces=forces)
+        else:
+            on = _payload(sheet, page, forces=forces)
+        sheet.text(0.5, 0.98, title, transform=sheet.transAxes, ha="center", va="top")
+        drawing.finish(on, above=TITLE)
     return figure
 
 
-def _finished(on: Sketch, title: str) -> None:
-    on.axes.text(0.5, 0.98, title, transform=on.axes.transAxes, ha="center", va="top")
-    drawing.finish(on, above=TITLE)
-
-
-def _link(axes: Axes, scene: Scene, i: int, angle: float, points: Sequence[str]) -> Sketch:
-    """Draw a link with its mass centre and the names of its ends."""
-    link = scene.links[i]
+def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sketch:
+    """Draw a link with its mass centre, the names of its ends, and all that acts on it."""
+    link, equations, write = page.derivation.scene.links[i - 1], page.equations, page.s.latex
+    along, back = direction(angle), angle + np.pi
     on = drawing.sketch(axes, max(link.length, abs(link.center)))
-    start, end = np.zeros(2), link.length * direction(angle)
+    start, end, center = np.zeros(2), link.length * along, link.center * along
     drawing.rod(on, start, end)
-    center = link.center * direction(angle)
     drawing.mass_center(on, center)
-    for place in (start, end):
+    name(on, center, f"$C_{{{i}}}$", direction(angle - np.pi / 2))
+    for place, towards, number in ((start, angle, i - 1), (end, back, i)):
         drawing.pin(on, place)
-    name(on, center, f"$C_{{{i + 1}}}$", direction(angle - np.pi / 2))
-    name(on, start, f"${points[i]}$", _clear(angle, outer=True))
-    name(on, end, f"${points[i + 1]}$", _clear(angle, outer=False))
+        name(on, place, f"${page.joint(number)}$", _clear(towards))
+    if not forces:
+        return on
+    drawing.weight(on, center, f"${write(page.s.masses[i - 1])} g$", 0.3)
+    _forces(on, start, angle, equations.near_force(i), page)
+    _forces(on, end, back, equations.far_force(i), page)
+    couples = [(start, angle, equations.joint_couple(i), 1.0)]
+    couples.append((end, back, equations.joint_couple(i + 1), -1.0))
+    if i == page.n and equations.payload is not None:
+        couples.append((end, back, equations.payload.inertia * page.s.qdd[-1], -1.0))
+    for place, towards, couple, sense in couples:
+        _couple(on, place, _clear(towards), couple, sense, page)
+    for k, load in enumerate(load for load in equations.loads if load.link == i):
+        drawing.arrow(
+            on, (0.75 - 0.12 * k) * end, 0.24 * on.size * direction(angle + np.pi / 2),
+            f"${page.load(load)}$", drawing.LOAD,
+            arriving=bool(np.cos(angle) > 0.0),  # on the side where the weight is not
+        )  # fmt: skip
     return on
 
 
-def _on_link(
-    on: Sketch,
-    length: float,
-    number: int,
-    angle: float,
-    reactions: Sequence[Reaction],
-    acting: Acting,
-) -> None:
-    """Draw all that acts on a link."""
-    start, end = np.zeros(2), length * direction(angle)
-    center = on.labels[0].places[0]
-    drawing.weight(on, center, rf"$m_{{{number}}} g$", 0.3)
-    _forces(on, start, reactions[number - 1], angle, outer=True)
-    if number < len(reactions):
-        _forces(on, end, reactions[number], angle + np.pi, outer=False)
-    for at, joint, sense in ((start, number, 1.0), (end, number + 1, -1.0)):
-        if joint in acting.couples:
-            _couple(on, at, angle, acting.couples[joint], sense)
-    if acting.payload_couple and reactions[number:] and number == len(reactions) - 1:
-        _couple(on, end, angle, acting.payload_couple, -1.0)
-    along = [text for link, text in acting.loads if link == number]
-    for k, text in enumerate(along):
-        across = 0.24 * on.size * direction(angle + np.pi / 2)
-        drawing.arrow(
-            on, (0.75 - 0.12 * k) * end, across, f"${text}$", drawing.LOAD,
-            arriving=bool(np.cos(angle) > 0.0),  # on the side where the weight is not
-        )  # fmt: skip
-
-
-def _payload(on: Sketch, tip: str, force: Reaction | None, acting: Acting) -> None:
+def _payload(axes: Axes, page: Page, *, forces: bool) -> Sketch:
     """Draw the body at the tip, with its weight and what the last link does to it."""
-    from matplotlib.patches import Circle
-
-    at = np.zeros(2)
-    on.axes.add_patch(Circle((0.0, 0.0), 0.09, facecolor=drawing.STEEL, ec=drawing.BLACK, zorder=3))
-    on.drawn.append((at[None], 0.09))
+    payload, on, at = page.equations.payload, drawing.sketch(axes, 1.0), np.zeros(2)
+    on.disc(at, 0.09, facecolor=drawing.STEEL, zorder=3)
     drawing.mass_center(on, at)
-    name(on, 0.09 * direction(-np.pi / 4), f"${tip}$", direction(-np.pi / 4))
+    name(on, 0.09 * direction(-np.pi / 4), f"${page.joint(page.n)}$", direction(-np.pi / 4))
     for side in np.eye(2):  # as large as a link is drawn
         on.drawn.append((0.5 * np.array([-side, side]), 0.0))
-    if force is None:
-        return
-    drawing.arrow(on, at, np.array([0.0, 0.36]), f"${acting.payload} g$", drawing.WEIGHT)
-    for along, text in ((np.array([1.0, 0.0]), force.x), (np.array([0.0, 1.0]), force.y)):
-        drawing.arrow(on, at, -0.36 * along, f"${text}$", drawing.REACTION)
-    if acting.payload_couple:
-        drawing.turning_arrow(
-            on, at, f"${acting.payload_couple}$", radius=0.16, span=(0.3, 1.3),
-            color=drawing.COUPLE,
-        )  # fmt: skip
+    if forces and payload is not None:
+        mass = page.s.latex(payload.mass)
+        drawing.weight(on, at, f"${f'({mass})' if payload.mass.is_Add else mass} g$", 0.36)
+        x, y = payload.force
+        _forces(on, at, np.pi / 4, (-x, -y), page, 0.36)
+        turning = payload.inertia * page.s.qdd[-1]
+        _couple(on, at, direction(0.8), turning, 1.0, page, 0.16)
+    return on
 
 
-def _forces(on: Sketch, at: Floats, force: Reaction, link: float, *, outer: bool) -> None:
+def _forces(
+    on: Sketch, at: Floats, link: float, force: Vector, page: Page, reach: float = 0.3
+) -> None:
     """Draw the two components in the sense in which they act on this link.
 
     They begin at the joint; one that would lie on the link arrives there from the other side.
     """
-    sign = 1.0 if outer == force.on_outer else -1.0
-    for along, text in ((np.array([1.0, 0.0]), force.x), (np.array([0.0, 1.0]), force.y)):
+    for along, component in zip(np.eye(2), force, strict=True):
+        if component == 0:
+            continue
+        sign = -1.0 if component.could_extract_minus_sign() else 1.0
         drawing.arrow(
-            on, at, 0.3 * sign * on.size * along, f"${text}$", drawing.REACTION,
+            on, at, reach * sign * on.size * along, f"${page.s.latex(int(sign) * component)}$",
+            drawing.REACTION,
             arriving=sign * float(along @ direction(link)) > np.cos(np.radians(25)),
         )  # fmt: skip
 
 
-def _couple(on: Sketch, at: Floats, angle: float, text: str, sense: float) -> None:
+def _couple(
+    on: Sketch, at: Floats, towards: Floats, couple: Expr, sense: float, page: Page,
+    radius: float = 0.13,
+) -> None:  # fmt: skip
     """Draw a couple on a link at one of its ends, in the sense from x to y (1) or against it."""
-    towards = _clear(angle, outer=not np.any(at))
-    middle = float(np.arctan2(towards[1], towards[0]))
-    drawing.turning_arrow(
-        on, at, f"${text}$", radius=0.13,
-        span=(middle - 0.7 * sense, middle + 0.7 * sense), color=drawing.COUPLE,
-    )  # fmt: skip
+    if couple != 0:
+        middle = float(np.arctan2(towards[1], towards[0]))
+        drawing.turning_arrow(
+            on, at, f"${page.s.latex(couple)}$", radius=radius,
+            span=(middle - 0.7 * sense, middle + 0.7 * sense), color=drawing.COUPLE,
+        )  # fmt: skip
 
 
-def _clear(angle: float, *, outer: bool) -> Floats:
+def _clear(link: float) -> Floats:
     """Return the direction in which an end of a link is clear of the link and of forces."""
-    link = angle if outer else angle + np.pi
     return drawing.clear_direction([link, *(np.arange(4) * np.pi / 2)], prefer=-3 * np.pi / 4)

@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from pendcore._messages.arguments import Floats
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+Floats = npt.NDArray[np.float64]
 
 GAPS = np.array([4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0])
 """Gaps between a name and what it names; the first is half a letter."""
@@ -28,18 +29,9 @@ BLOCKED = 1000.0
 
 @dataclass(slots=True)
 class Label:
-    """A name.
+    """A name, with LaTeX between dollars, and the points that it may stand beside, m.
 
-    Attributes
-    ----------
-    text : str
-        The name, with LaTeX between dollars.
-    places : ndarray, (k, 2)
-        Points that the name may stand beside, the best first, m.
-    towards : ndarray, (2,)
-        The side that is tried first: a vector, y down.
-    style : dict
-        How the name is written.
+    The best point is the first; ``towards`` is the side that is tried first, y down.
     """
 
     text: str
@@ -49,42 +41,31 @@ class Label:
 
 
 def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, float]]) -> None:
-    """Write names where they are clear of what is drawn and of each other.
+    """Write names where they are clear of each other and of what is drawn.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        The axes, with their final limits; y down.
-    labels : sequence of Label
-        The names, those with the least choice of place first.
-    drawn : sequence of (ndarray (k, 2), float)
-        Points of lines, and half the width of the line, m.
+    The axes have their final limits, y down. The names with the least choice of place come first.
+    ``drawn`` are points of lines, and half the width of each line, m.
     """
-    figure = axes.figure
-    to_points = 72.0 / figure.dpi
-    across = abs(axes.transData.transform((1, 0))[0] - axes.transData.transform((0, 0))[0])
-    spots = np.vstack([axes.transData.transform(points) for points, _ in drawn]) * to_points
-    radii = np.concatenate([np.full(len(points), radius) for points, radius in drawn])
-    radii = radii * across * to_points
+    to_points = 72.0 / axes.figure.dpi
     sheet = axes.get_window_extent().get_points() * to_points
+    scale = float(np.ptp(sheet[:, 0]) / np.ptp(axes.get_xlim()))
+    spots = np.vstack([axes.transData.transform(points) for points, _ in drawn]) * to_points
+    radii = np.concatenate([np.full(len(points), radius * scale) for points, radius in drawn])
     taken: list[tuple[Floats, Floats]] = []  # centre and half the size of a box
     for label in labels:
         style: dict[str, Any] = {"ha": "center", "va": "center", "zorder": 9} | label.style
         text = axes.text(label.places[0, 0], label.places[0, 1], label.text, **style)
         box = text.get_window_extent()
-        half = np.array([box.width, box.height]) * to_points / 2
-        half = half + (4.0 if "bbox" in style else 0.0)
+        half = np.array([box.width, box.height]) * to_points / 2 + 4.0 * ("bbox" in style)
         anchors = axes.transData.transform(label.places) * to_points
         found, worth = _candidates(anchors, label.towards * np.array([1.0, -1.0]), half)
-        room = np.full(len(found), CLEAR)
         outside = np.maximum(np.abs(found[:, None] - spots) - half, 0.0)
-        room = np.minimum(room, (np.hypot(*np.moveaxis(outside, -1, 0)) - radii).min(axis=1))
+        room = np.minimum(CLEAR, (np.hypot(*np.moveaxis(outside, -1, 0)) - radii).min(axis=1))
         for center, extent in taken:
             apart = np.maximum(np.abs(found - center) - half - extent, 0.0)
             room = np.minimum(room, np.hypot(*apart.T))
         inside = (found - half > sheet[0]).all(axis=1) & (found + half < sheet[1]).all(axis=1)
-        worth = worth + 1.2 * room - BLOCKED * (~inside | (room < 1.5))
-        best = found[int(np.argmax(worth))]
+        best = found[int(np.argmax(worth + 1.2 * room - BLOCKED * (~inside | (room < 1.5))))]
         x, y = axes.transData.inverted().transform(best / to_points)
         text.set_position((float(x), float(y)))
         taken.append((best, half))
@@ -92,13 +73,11 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
 
 def _candidates(anchors: Floats, towards: Floats, half: Floats) -> tuple[Floats, Floats]:
     """Return centres of a box around anchors, and their worth: more if near and as wished."""
-    first = np.arctan2(towards[1], towards[0]) if np.any(towards) else 0.0
     turns = np.arange(AROUND) * (2 * np.pi / AROUND)
-    sides = np.stack([np.cos(first + turns), np.sin(first + turns)], axis=1)
+    angles = np.arctan2(towards[1], towards[0]) + turns
+    sides = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     reach = 1.0 / np.maximum(np.abs(sides) / half, 1e-9).max(axis=1)  # to the border of the box
-    offsets = sides[:, None] * (reach[:, None] + GAPS)[..., None]
-    found = anchors[:, None, None] + offsets
-    wished = np.any(towards) * 2.0 * (np.cos(turns) - 1.0)
-    worth = wished[:, None] - 0.5 * GAPS
+    found = anchors[:, None, None] + sides[:, None] * (reach[:, None] + GAPS)[..., None]
+    worth = (np.any(towards) * 2.0 * (np.cos(turns) - 1.0))[:, None] - 0.5 * GAPS
     worth = worth - 1.5 * np.arange(len(anchors))[:, None, None]
-    return found.reshape(-1, 2), np.broadcast_to(worth, found.shape[:-1]).reshape(-1)
+    return found.reshape(-1, 2), worth.reshape(-1)

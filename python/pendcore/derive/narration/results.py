@@ -1,0 +1,194 @@
+"""What follows from the equations of the links: reactions, motion, its solution, energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from sympy import Dummy, Expr, Integer, Pow, expand
+
+from pendcore.derive.narration.page import Page, listed
+from pendcore.derive.step import Equation
+from pendcore.derive.writing import ANGLE, RATE
+
+BY_ELIMINATION = 4
+"""The number of unknown accelerations from which determinants are longer than a page."""
+
+
+def equations_of_motion(page: Page) -> None:
+    """Write the reactions, and what is left without them."""
+    page.step(
+        "Joint reactions",
+        "Newton's equations give the joint reactions, from the tip inwards.",
+        *_reactions(page),
+    )
+    if page.n == 2:
+        _put_in(page)
+    law, locked = page.derivation.law, page.derivation.locking
+    text = (
+        "The reactions are put into the moment equations, and the terms with accelerations are "
+        f"collected on the left: ${law}$, with a symmetric matrix $M$, whose entries are short by "
+        "the formulas for the sine and cosine of a difference."
+    )
+    if locked:
+        text += (
+            " The unknown couples of locks are in $\\lambda$, and everything else is in $f$: such "
+            "a couple acts on the link beyond its joint, and the opposite couple on the link "
+            "before it."
+        )
+    page.step(
+        "Equations of motion, collected" if page.n == 2 else "Equations of motion",
+        text,
+        *(page.equation(*named) for named in (page.derivation.named.entries | locked).items()),
+    )
+
+
+def _reactions(page: Page) -> Iterator[Equation]:
+    """Yield F_p, F_21 and so on, with accelerations put in where the textbook does."""
+    equations, payload = page.equations, page.equations.payload
+    if payload is not None:
+        for axis, symbol, line in zip("xy", payload.force, payload.newton, strict=True):
+            inertia = payload.mass * page.coordinate(axis, page.joint(page.n), 2)
+            yield page.equation(symbol, line.acting + symbol - inertia)
+    for i in range(page.n, 0, -1):
+        for k, axis in enumerate("xy"):
+            symbol, line = equations.forces[i - 1][k], equations.links[i - 1].newton[k]
+            acceleration = page.coordinate(axis, page.center(i), 2)
+            if i == page.n == 2:
+                acceleration = page.chain.center_accelerations[i - 1][k]
+            force = page.s.masses[i - 1] * acceleration - line.acting.subs(symbol, 0)
+            number = "2.9" if i == 2 and axis == "y" else None
+            yield page.equation(symbol, force if i == 1 else -force, number)
+
+
+def _put_in(page: Page) -> None:
+    """Write (2.10) and (2.11): the reactions put into both moment equations."""
+    equations, chain = page.equations, page.chain
+    known: dict[Expr, Expr] = {}
+    brackets: dict[Expr, Expr] = {}  # m (a - g): the bracket's contents stay together
+
+    def inertia(mass: Expr, acceleration: Expr, axis: int) -> Expr:
+        symbol = Dummy()
+        brackets[symbol] = acceleration - equations.weight(Integer(1))[axis]
+        return expand(mass * symbol)
+
+    for axis in (0, 1):
+        if equations.payload is not None:
+            mass, acceleration = equations.payload.mass, chain.tip_acceleration[axis]
+            known[equations.payload.force[axis]] = -inertia(mass, acceleration, axis)
+        for i in (2, 1):
+            acceleration = chain.center_accelerations[i - 1][axis]
+            near = inertia(page.s.masses[i - 1], acceleration, axis)
+            near -= equations.far_force(i)[axis].xreplace(known)
+            near -= sum(load.force[axis] for load in equations.loads if load.link == i)
+            known[equations.forces[i - 1][axis]] = expand(near if i == 1 else -near)
+    page.step(
+        "Equations of motion",
+        "The joint reactions are put into the moment equations of both links.",
+        *(
+            page.equation(
+                link.moment.inertia,
+                expand(link.moment.acting.xreplace(known)).xreplace(brackets),
+                number if number == "2.11" or link.about_pivot else None,
+            )
+            for link, number in zip(equations.links, ("2.10", "2.11"), strict=True)
+        ),
+    )
+
+
+def solution(page: Page) -> None:
+    """Write the accelerations, and the couples of locks."""
+    motion, locked = page.derivation, page.equations.locked
+    text = "The equations of motion are linear in the accelerations."
+    accelerations, found = motion.by_entries, list[Equation]()
+    if locked:
+        text += (
+            " The equations of links that turn as one are added, which takes the couple of their "
+            "lock out of them: $\\dot{q} = B r$ with as many unknowns $r$ as are left. A link that "
+            "is locked to the ground needs no equation."
+        )
+    if motion.turning_together.cols >= BY_ELIMINATION:
+        matrix, right = ("B^{T} M B", "B^{T} f") if locked else ("M", "f")
+        text += (
+            f" Elimination solves them: ${matrix} = L D L^{{T}}$, where $L$ has ones on its "
+            "diagonal, its entries $\\ell_{ij}$ below and zeros above, and $D$ is diagonal. Then "
+            f"$L h = {right}$ gives $h$, and $L^{{T}} a = D^{{-1}} h$ gives the accelerations $a$, "
+            "the last one first. Here $D_{1}$ and $h_{1}$ are the first entries of both sides."
+        )
+        found = [page.equation(*assignment) for assignment in motion.by_elimination]
+        accelerations = motion.shared_accelerations
+    elif motion.turning_together.cols > 1:
+        text += " Cramer's rule solves them, with the determinant $\\Delta$."
+        delta = page.symbol("Delta", r"\Delta")
+        found = [page.equation(delta, motion.determinant)]
+        inverse = {Pow(motion.determinant, -1): 1 / delta}
+        accelerations = tuple(a.xreplace(inverse) for a in accelerations)
+    if locked:
+        write = page.s.latex
+        conditions = (f"${write(page.chain.joint(j)[2])} = 0$" for j in locked)
+        couples = (f"${write(symbol)}$" for symbol in page.equations.holding.values())
+        text += (
+            f" The condition of each lock, {listed(conditions)}, is the equation that finds "
+            f"{listed(couples)}: what the lock must add to $f$ so that ${motion.law}$ holds with "
+            "these accelerations."
+        )
+    page.step(
+        f"Solution for the angular acceleration{'s' if page.n > 1 else ''}",
+        text,
+        *found,
+        *(page.equation(a, value) for a, value in zip(page.s.qdd, accelerations, strict=True)),
+        *(
+            page.equation(page.equations.holding[joint], couple)
+            for joint, couple in motion.holding.items()
+        ),
+    )
+
+
+def first_order(page: Page) -> None:
+    """Write the first-order form, with the states in the textbook's order."""
+    names, rates = [], []
+    for i, (q, qd, qdd) in enumerate(zip(page.s.q, page.s.qd, page.s.qdd, strict=True)):
+        k = 2 * i + 1
+        x = page.symbol(f"x({k})", f"x_{{{k}}}", ANGLE)
+        xd = page.symbol(f"x({k + 1})", f"x_{{{k + 1}}}", RATE)
+        names += [page.equation(x, q), page.equation(xd, qd)]
+        for name, value in ((x, xd), (xd, qdd)):
+            rate = page.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
+            rates.append(page.equation(rate, value))
+    page.step(
+        "First-order form",
+        "Equations of second order become a system of first order, with two states for each link.",
+        *names,
+        *rates,
+    )
+
+
+def energy(page: Page) -> None:
+    """Write energies, powers and their balance: the check that the equations of motion allow."""
+    of = page.derivation.energy
+    found = [
+        page.equation(page.symbol("T", "T"), of.kinetic),
+        page.equation(page.symbol("V", "V"), of.potential),
+    ]
+    names, told = [], []
+    for i, (effect, power) in enumerate(of.powers_with(page.equations.forces[0]).items(), start=1):
+        told.append(f"$P_{{{i}}}$ is that of the {_named(effect)}")
+        names.append(page.symbol(f"P{i}", f"P_{{{i}}}"))
+        found.append(page.equation(names[-1], power))
+    text = "The motion conserves the energy; no step above has used this."
+    if names:
+        text = (
+            "Only the effects change the energy, at the rate of the sum of their powers: "
+            f"{', '.join(told)}."
+        )
+    rate = page.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
+    page.step("Energy", text, *found, page.equation(rate, sum(names)))
+
+
+def _named(effect: Any) -> str:
+    """Return what an effect is and where: ``motor at joint 2``."""
+    words = {"viscous_joint": "damping"}.get(effect.kind, effect.kind.replace("_", " "))
+    for place, where in (("joint", "at joint"), ("link", "on link")):
+        if hasattr(effect, place):
+            words += f" {where} {getattr(effect, place)}"
+    return str(words)
