@@ -32,7 +32,7 @@ def test_every_kind_of_the_core_has_its_class_under_its_names():
     [
         ("ViscusJoint", r"did you mean 'ViscousJoint'\?"),
         ("torsional_spring", r"did you mean 'TorsionalSpring'\?"),
-        ("Xyz", r"known are Effect, Part, "),
+        ("Xyz", r"known are PD, CompiledUser, "),
     ],
 )
 def test_an_unknown_effect_is_told_with_the_nearest_known_one(name, remedy):
