@@ -222,7 +222,6 @@ DOORS = {
 }
 
 
-@pytest.mark.every_value("door")
 @pytest.mark.parametrize("door", DOORS)
 def test_half_a_character_is_refused_at_the_door(door, tmp_path):
     sol = pc.Case(**SHORT, name="kept").simulate()

@@ -60,7 +60,6 @@ STOPPED = [
 ]
 
 
-@pytest.mark.every_value("row", "why")
 @pytest.mark.parametrize("row", STOPPED, ids=lambda row: f"{row[0]}: {row[3][0]}")
 @pytest.mark.parametrize("why", STOPS)
 def test_what_stops_a_file_is_named_and_leaves_the_others(row, why, monkeypatch, pendcore):
@@ -206,7 +205,6 @@ WRITERS = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", WRITERS)
 def test_whatever_is_written_has_a_name_of_its_own_until_it_is_whole(name, monkeypatch, pendcore):
     under = []
