@@ -52,9 +52,8 @@ def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     kept = set()
     for name in every(functions, share):
         keeps_all = share == 1 and name.startswith(NOT_REDUCED)
-        kept |= {
-            case.nodeid for case in (functions[name] if keeps_all else few(functions[name], values))
-        }
+        cases = functions[name] if keeps_all else few(functions[name], values)
+        kept |= {case.nodeid for case in cases}
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])
     items[:] = [item for item in items if item.nodeid in kept]
 
