@@ -40,7 +40,8 @@ def test_the_pages_project_gets_the_bits_of_python_whatever_its_flags(flags, tmp
     for name, program in zip(NAMES, on_page("cpp"), strict=True):
         (tmp_path / f"{name}.cpp").write_text(program)
     (lines,) = on_page("cmake")
-    lines = lines.replace("(pendcore ", "(pendcore 0.1 ") + 'message(STATUS "pendcore ${pendcore_VERSION}")\n'
+    lines = lines.replace("(pendcore ", "(pendcore 0.1 ")
+    lines += 'message(STATUS "pendcore ${pendcore_VERSION}")\n'
     for name in NAMES[1:]:  # "two more lines like those above"
         lines += re.sub(
             "end_angles", name, "".join(re.findall(r"^(?:add|target)_.*\n", PAGE, re.M))
