@@ -72,26 +72,9 @@ def test_the_examples_of_a_docstring_do_what_they_show(name, tmp_path, monkeypat
     assert not told, f"\n{told}"
 
 
-def test_the_methods_of_solutions_and_scenes_are_among_the_names():
-    assert {"Scene.explain", "Scene.textbook", "Solution.resume", "Case.simulate"} <= {*PUBLIC}
-    assert {"Scene.replace", "effects.Motor", "events.Found", "simulate"} <= {*PUBLIC}
-
-
-def test_an_example_that_shows_something_else_is_found():
-    docstring = inspect.getdoc(pc.Scene.textbook)
-    assert complaints("right", docstring) == ""
-    assert "Expected" in complaints("wrong", docstring.replace("9.807)", "9.81)"))
-    assert examples_of(docstring.replace("Examples", "Notes")) == []
-
-
 @pytest.mark.parametrize("kind", effects.kinds())
 def test_an_example_whose_outcome_is_not_told_shows_the_kind(kind):
     told = effects.kinds()[kind].description._replace(outcome="")
     docstring = effect_description.docstring(told)
     assert examples_of(docstring)[-1].want == f"'{kind}'\n"
     assert complaints(kind, docstring) == ""
-
-
-def test_an_effect_without_examples_has_no_section_of_them():
-    told = pc.effects.Motor.description._replace(examples="", outcome="")
-    assert "Examples" not in effect_description.docstring(told)
