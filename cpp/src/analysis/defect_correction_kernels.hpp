@@ -141,8 +141,8 @@ PENDCORE_INLINE void errors_within(const ErrorsWithin& wanted) {
 
 /// All of them for this processor.
 struct DefectKernels {
-  using BeginStep =
-      void (*)(const LobattoPoints&, const CurveOfStep&, double, double, CorrectionState&);
+  using BeginStep = void (*)(const LobattoPoints&, const CurveOfStep&, double, double,
+                             CorrectionState&);
 
   decltype(fastest<&pendcore::set_curve>()) set_curve = fastest<&pendcore::set_curve>();
   std::array<BeginStep, 5> begin_step_of = {

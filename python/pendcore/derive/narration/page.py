@@ -62,7 +62,7 @@ class Page:
 
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
-        return Formula("ABD"[joint] if self.n <= 2 or joint == 0 else f"P_{{{joint}}}")
+        return Formula(("A", "B", "D")[joint] if self.n <= 2 or joint == 0 else f"P_{{{joint}}}")
 
     @staticmethod
     def center(link: int) -> Formula:
