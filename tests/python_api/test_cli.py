@@ -183,6 +183,7 @@ def test_a_csv_file_has_every_digit_of_the_states_and_parameters_replace_numbers
     assert sol.scene.links[1].inertia == pytest.approx(0.5 / 12)
 
 
+@pytest.mark.every_value("given")
 @pytest.mark.parametrize(
     ("of_the_case", "given", "kept"),
     [
@@ -207,3 +208,11 @@ def test_options_of_the_command_take_the_place_of_those_of_the_case(
     same = pc.simulate(book.scene, q0=book.q0, t_span=book.t_span, **given, **kept)
     assert np.array_equal(sol.y, same.y)
     assert sol.accuracy is None
+
+
+def test_an_implausible_scene_is_run_with_a_warning(pendcore):
+    odd = CASE.replace("length = 1.0\n", "length = 1.0\ninertia = 9.0\n", 1)
+    Path("odd.toml").write_text(odd)
+    told = pendcore("run odd.toml")
+    assert told.status == 0
+    assert "pendcore: warning: link 1: inertia = 9" in told.err

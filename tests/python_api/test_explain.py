@@ -10,6 +10,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
+from pendcore._explanation.constraints import constraint_jacobian
 
 G = 9.807
 ROD = pc.Link(mass=1.0, length=1.0)
@@ -328,3 +329,21 @@ def test_what_overflows_is_explained_as_well(case):
     told = pc.Scene(links=[link], effects=effects).explain()
     assert told.mobility.degrees_of_freedom == 1
     assert repr(told)
+
+
+def test_the_constraint_jacobian_has_no_row_that_a_motion_violates():
+    """Any rates of the joints make velocities of the links that all constraints allow."""
+    scene = pc.Scene(links=[ROD, pc.Link(mass=1, length=0.3, center=0.1), ROD])
+    rng = np.random.default_rng(1)
+    q, qd = rng.normal(size=(2, 3))
+    step = 1e-6
+
+    def coordinates(q):
+        centers = scene._compiled.mass_centers(np.zeros(1), q[np.newaxis])[0]
+        return np.column_stack([centers, q]).ravel()
+
+    velocity = (coordinates(q + step * qd) - coordinates(q - step * qd)) / (2 * step)
+    jacobian = constraint_jacobian(scene, q)
+    assert jacobian.shape == (6, 9)
+    assert np.abs(jacobian @ velocity).max() < 1e-8
+    assert np.abs(jacobian @ rng.normal(size=9)).max() > 0.1

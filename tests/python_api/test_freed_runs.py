@@ -219,10 +219,20 @@ QUICK = [
 @pytest.mark.parametrize("count", [1000, pytest.param(100_000, marks=pytest.mark.whole)])
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")
 def test_any_number_of_runs_may_be_broken_off(count):
-    calls = cycle(WAYS[name] for name in QUICK)
-    for call in islice(calls, 201):
-        traces(call)
-    before = resident()
-    for call in islice(calls, count):
-        traces(call)
+    slow = cycle(["ctrl-c, dense", "progress, dense", "resume"])
+    names = (name if i % 100 else next(slow) for i, name in enumerate(cycle(QUICK)))
+    with alarm_is_ctrl_c():
+        for name in islice(names, 201):
+            traces(WAYS[name])
+        before = resident()
+        for name in islice(names, count):
+            traces(WAYS[name])
     assert resident() - before < 30
+
+
+def test_functions_live_as_long_as_the_core_can_call_them():
+    scene = Rig(MADE["scene"]).made._compiled
+    run = Rig(MADE["run with both"]).made._run
+    gc.collect()
+    assert scene.acceleration_of_state(0.0, [0.3, 0.4], [1.0, 1.0]) is not None
+    assert run.resume(3.0, None, 10**6, None, None).t_reached == 3.0

@@ -9,6 +9,10 @@ from fuzz.drawn_run import TIME_LIMIT
 from fuzz.readers import (
     READERS,
     finding,
+    read_archive,
+    read_case,
+    whole_archives,
+    whole_cases,
 )
 
 CASES = 400
@@ -21,6 +25,14 @@ def test_random_cases_end_in_time_and_keep_every_claim():
     assert told.outcomes.total() == CASES
     assert not told.failed, campaign.report_of("", told, SEED, 0)
     assert 0 < told.longest[0] < 4 * TIME_LIMIT
+
+
+@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
+def test_what_is_whole_is_read_and_used():
+    for data in whole_archives():
+        read_archive(data)
+    for text in whole_cases():
+        read_case(text)
 
 
 TIMES = {"case": 200, "archive": 200, "state": 400, "scene": 200, "store": 100}

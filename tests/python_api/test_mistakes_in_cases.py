@@ -94,7 +94,7 @@ MISTAKES = [
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("words")
+@pytest.mark.every_value("words", "wrong")
 @pytest.mark.parametrize(("right", "wrong", "words"), MISTAKES, ids=lambda x: x[:40])
 def test_a_mistake_is_told_with_file_line_and_remedy(right, wrong, words, tmp_path):
     text = TEXTBOOK + DAMPED + MOTOR

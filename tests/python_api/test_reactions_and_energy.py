@@ -93,7 +93,10 @@ def test_it_is_the_exact_one_where_that_is_known(case):
     scene, run, forces, words = EXACT[case]
     solution = pc.simulate(scene, **run)
     found = solution.largest_reactions()
-    assert [one.force for one in found] == pytest.approx(forces, rel=1e-9)
+    within = 1e-12 if case in ("shaken", "rest") else 1e-9
+    assert [one.force for one in found] == pytest.approx(forces, rel=within)
+    # The pivot shakes faster than the steps are long.
+    assert case != "shaken" or solution.stats.accepted < 5 * 200 / (2 * pi)
     assert all(one.steady == (case == "rest") for one in found)
     assert all(one.just_before == (case == "caught") for one in found)
     assert re.search(f"joint 1: {words}", text(facts(solution)))

@@ -59,6 +59,7 @@ def test_times_that_are_asked_for_go_on_where_they_ended():
     assert BACK.resume(1.0, [1.5]).t.tolist() == [2.5, 2.0, 1.5]
     assert CAPPED.status == "max_steps"
     assert CAPPED.resume(5).t.tolist() == [1, 2, 3, 4, 5]
+    assert same(CAPPED.resume(5), begun(t_eval=[1, 2, 3, 4, 5]))
     assert POINT.resume(5, t_eval=[1, 5]).t.tolist() == [0, 1, 5]
     assert POINT.resume(-5, t_eval=[-1, -5]).t.tolist() == [0, -1, -5]
     resumed = begun(t_eval=[0, 1]).resume(10, t_eval=[5, 6, 7])
@@ -128,6 +129,7 @@ DAMAGE = [
 ]  # fmt: skip
 
 
+@pytest.mark.every_value("damage")
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_solution_is_refused(damage):
     run = _core.Run.__new__(_core.Run)

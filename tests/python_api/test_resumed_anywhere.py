@@ -299,3 +299,16 @@ def test_another_process_with_other_instructions_goes_on_the_same(method, scene,
         )  # fmt: skip
         assert done.stdout.strip() == instructions
         assert differences(whole, pc.load(tmp_path / "whole.npz")) == []
+
+
+@pytest.mark.every_value("method")
+@pytest.mark.parametrize("method", ["auto", "dopri5", "radau5"])
+def test_a_run_at_times_goes_on_where_it_was_cut_between_them(method):
+    times = np.linspace(0, 1, 26)
+    at, how = ([0.4, 1.0], [3.0, -2.0]), {"method": method, "ledger": True}
+    whole = pc.simulate(RUBBED, (0, 1), *at, t_eval=times, **how)
+    how |= {"max_steps": 7, "on_failure": "ignore"}
+    cut = pc.simulate(RUBBED, (0, 0.5), *at, t_eval=times[times <= 0.5], **how)
+    assert cut.status == "max_steps"
+    again = carried(cut, "file").resume(0.5).resume(1.0, times[times > 0.5])
+    assert differences(whole, again) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import signal
 import sys
 import threading
@@ -13,6 +14,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore._messages.progress import ProgressBar
+from pendcore._run.options import RUN_DEFAULTS
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 import write_options
@@ -36,7 +38,8 @@ def same_bits(a, b):
 
 def test_options_have_the_documented_defaults_and_are_written_where_type_checkers_look():
     parameters = signature(pc.simulate).parameters
-    assert [*parameters][:4] == ["scene", "t_span", "q0", "qd0"]
+    assert [*parameters] == ["scene", "t_span", "q0", "qd0", *RUN_DEFAULTS]
+    assert {name: parameters[name].default for name in RUN_DEFAULTS} == RUN_DEFAULTS
     assert [*signature(pc.Link).parameters] == ["mass", "length", "center", "inertia"]
     defaults = [parameters[name].default for name in ("method", "rtol", "atol")]
     assert defaults == ["auto", 1e-9, 1e-12]
@@ -135,6 +138,15 @@ def enough(fraction):
     raise LookupError("enough")
 
 
+def goes_on(run, compensated):
+    """Compare a run that was stopped, pickled and resumed with one that never stopped."""
+    t_end = run.t[-1] + 1
+    again = pickle.loads(pickle.dumps(run)).resume(t_end)
+    whole = textbook(t_span=(0, t_end), store="end", compensated=compensated)
+    assert same_bits(again, whole)
+    assert again.stats == whole.stats
+
+
 @pytest.mark.parametrize("bar", [False, True])
 @pytest.mark.parametrize("compensated", [False, True])
 def test_what_breaks_a_run_off_passes_through_with_the_run_so_far(bar, compensated, capsys):
@@ -147,8 +159,8 @@ def test_what_breaks_a_run_off_passes_through_with_the_run_so_far(bar, compensat
     for exception, status in ((stop, "interrupted"), (error, "callback_error")):
         run = exception.value.solution
         assert (run.status, run.t[-1] > 0) == (status, True)
-        span = {"t_span": (0, run.t[-1] + 1), "store": "end"}
-        assert same_bits(run.resume(run.t[-1] + 1), textbook(**span, compensated=compensated))
+        goes_on(run, compensated)
+    goes_on(endless(time_limit=0.1, compensated=compensated), compensated)
 
 
 def test_a_progress_function_gets_growing_fractions():

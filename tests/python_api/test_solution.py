@@ -221,6 +221,7 @@ def test_a_repr_says_how_it_ended_what_was_run_and_what_it_took():
 
 COUNTED = [
     (False, "auto", "series, each as long as many right-hand sides"),
+    (False, "taylor", "series, each as long as many right-hand sides"),
     (False, "dop853-radau5", "right-hand sides"),
     (True, "auto", "series and right-hand sides"),
     (True, "radau5", "right-hand sides"),

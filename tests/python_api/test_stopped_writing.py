@@ -6,6 +6,7 @@ import errno
 import gc
 import json
 import os
+import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -62,6 +63,7 @@ STOPPED = [
 ]
 
 
+@pytest.mark.every_value("row")
 @pytest.mark.parametrize("row", STOPPED, ids=lambda row: f"{row[0]}: {row[3][0]}")
 @pytest.mark.parametrize("why", STOPS)
 def test_what_stops_a_file_is_named_and_leaves_the_others(row, why, monkeypatch, pendcore):
@@ -240,6 +242,27 @@ def test_two_writers_of_one_path_do_not_meet():
         assert first.read_text() == "first"
     assert Path("a.txt").read_text() == "first"
     assert listed() == ["a.txt"]
+
+
+def test_threads_that_save_to_one_path_always_leave_a_whole_file():
+    runs = [BOOK.simulate(), pc.simulate(BOOK.scene, (0, 20), [-1, -1])]
+    runs[0].save("a.npz")
+
+    def save_and_load(i):
+        runs[i % 2].save("a.npz")
+        return pc.load("a.npz").fingerprint
+
+    with ThreadPoolExecutor(4) as threads:
+        assert {*threads.map(save_and_load, range(40))} == {run.fingerprint for run in runs}
+    assert listed() == ["a.npz"]
+
+
+def test_ctrl_c_while_the_archive_is_written_keeps_the_other_files(monkeypatch, pendcore):
+    monkeypatch.setattr(
+        "numpy.lib.format.write_array", lambda *_, **__: signal.raise_signal(signal.SIGINT)
+    )
+    assert pendcore("run -o o").status == 1
+    assert listed("o") == sorted({*FILES} - {"solution.npz"})
 
 
 class Litter:
