@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
@@ -66,6 +67,8 @@ def test_every_point_is_a_run_of_its_own(work: pc.HorizonWork) -> None:
 
 def test_its_figure_has_a_line_a_method_over_digits_and_over_time(work: pc.HorizonWork) -> None:
     sheet = Figure()
+    assert work.plot() is not None
+    plt.close("all")
     work.plot(sheet)
     by_digits, by_cost = sheet.axes
     assert len(by_digits.lines) == len(work.methods) + 1  # and what the exponent predicts

@@ -20,7 +20,7 @@ from pendcore.cli import main
 from pendcore.derive import Derivation
 from pendcore.derive.code.computation import share
 from pendcore.derive.code.cpp import header
-from pendcore.derive.code.octave import inline_function, written_out
+from pendcore.derive.code.octave import _exact, inline_function, written_out
 
 pytestmark = pytest.mark.unsanitized
 
@@ -376,3 +376,8 @@ def test_the_engineer_s_lines_of_cpp_compile_and_run(as_the_page_says: Path) -> 
         assert done.returncode == 0, done.stderr
     rate, acceleration, *_ = map(float, done.stdout.split())
     assert rate == acceleration != 0.0
+
+
+@pytest.mark.parametrize("x", [9.807, 0.1, 1e-100, 1e300, 1 / 3])
+def test_a_number_in_a_file_is_the_same_double(x: float) -> None:
+    assert float(eval(str(sympy.octave_code(_exact(x))))) == x

@@ -209,7 +209,7 @@ def test_without_converters_there_is_markdown_with_its_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    files = Derivation(LEVEL.scene).report(LEVEL, tmp_path / "new", worksheet=True)
+    files = Derivation(LEVEL.scene).report(LEVEL, str(tmp_path / "new"), worksheet=True)
     names = [path.name for path in files]
     assert names[:2] == ["report.md", "worksheet.md"]
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(names)

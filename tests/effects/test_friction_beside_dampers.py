@@ -61,6 +61,15 @@ def test_a_strong_damper_leaves_the_motion_of_a_locked_joint(damping: float, met
     assert off <= 1e-8 + 1 / damping
 
 
+@pytest.mark.parametrize("damping", [1.0, 1e2, 1e4])
+def test_methods_agree_on_the_motion(damping: float) -> None:
+    scene = rig(fx.ViscousJoint(2, damping))
+    tight = run(scene, method="radau5", rtol=1e-11, atol=1e-13)
+    for method in METHODS:
+        sol = run(scene, method=method, rtol=1e-8, atol=1e-10, max_steps=9000)
+        assert np.abs(sol.q - tight.q).max() < 1e-6
+
+
 def angles_of_a_pushed_rod(damping: float, friction: float, times: list[float]) -> list[float]:
     """J = 1, torque sin t, from rest: w' = sin t - f sgn w - b w, w = 0 where abs(sin t) <= f.
 

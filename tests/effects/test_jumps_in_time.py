@@ -207,6 +207,8 @@ def test_a_step_that_a_jump_makes_too_small_is_told_with_its_remedy(law: Any) ->
     assert sol.t[-1] == pytest.approx(0.5)
     remedy = "or a law jumps here: effect 1 (compiled_user): name the times of its jumps, breaks="
     assert remedy in sol.message
+    pulled = fx.Motor(joint=1, pd=fx.PD(kp=-1e9, kd=-1e9, reference=0.0))
+    assert "law jumps" not in pc.simulate(rod(pulled), q0=1.0, **how).message
     mended = pc.simulate(rod(law.replace(breaks=[0.5])), q0=0.0, **how)
     assert mended.success
     assert mended.y[:, -1] == pytest.approx([1e9 / 8, 1e9 / 2], rel=1e-12)

@@ -222,3 +222,10 @@ def test_starts_in_degrees_are_told_once():
         assert len(warned) == 1
     pc.ensemble(BOOK, q0=[[45.5, 60], [30, 90]], t_span=(0, 0.1))
     pc.ensemble(BOOK, q0=[[0, 5], [10, 0]], t_span=(0, 0.1))
+
+
+def test_a_member_is_the_run_that_it_was_with_its_method_and_tolerances():
+    how = {"method": "radau5", "rtol": 1e-3, "atol": 1e-5}
+    found = pc.ensemble(BOOK, (0, 5), [[0.4, 0.5], [1.0, -1.0]], **how)
+    alone = pc.simulate(BOOK, (0, 5), [1.0, -1.0], **how)
+    assert np.array_equal(found.member(1).y, alone.y)

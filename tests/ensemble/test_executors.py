@@ -83,3 +83,12 @@ def test_a_cluster_makes_good_a_worker_that_dies(cluster, tmp_path):
     killer.join()
     assert "not_run" not in found.counts()
     assert contents(here) == contents(there)
+
+
+def test_a_limit_that_passes_while_an_executor_works_ends_the_whole():
+    how = {"chunk": 1, "time_limit": 0.05, "on_failure": "ignore"}
+    with ThreadPoolExecutor(1) as pool:
+        starts_of_many = [[0.1 * k, 0.2] for k in range(50)]
+        found = pc.ensemble(BOOK, (0, 3000), starts_of_many, executor=pool, **how)
+    assert found.ending == "time_limit"
+    assert found.counts()["not_run"] > 0

@@ -44,7 +44,7 @@ def test_which_methods_have_lanes_is_told():
         assert "a lane each, by taylor; it runs them one by one" in five
 
 
-@pytest.mark.every_value("name")
+@pytest.mark.every_value("name", "n")
 @pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-7, 1e-12])
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8, 9])
 @pytest.mark.parametrize("name", EFFECTS)

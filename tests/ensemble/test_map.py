@@ -48,6 +48,11 @@ def test_zoom_refine_and_other_numbers(tmp_path, capsys):
         assert run(tmp_path / show, "--count", "4", "--zoom", "0", "90", "5", "9", case=case) == 0
         with np.load(tmp_path / show / "map.npz") as found:
             assert np.isfinite(found["values"]).all()
+    # Where gravity varies, that of the case forbids nothing.
+    case.write_text(text.replace("{}", "first_event").replace('"q0_deg[2]"', '"gravity"'))
+    capsys.readouterr()
+    assert run(tmp_path / "g", "--count", "4", "--zoom", "0", "90", "0.1", "9", case=case) == 0
+    assert "were not needed" not in capsys.readouterr().out
 
 
 SHOW = 'show = "first_event"'

@@ -88,3 +88,34 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(method, n, data, t_e
             within_two_last_bits_of_time = 2 * abs(slope) * np.spacing(abs(t))
             rounding = LAST_BITS * np.spacing(size + abs(level))
             assert abs(weights @ one.y - level) <= rounding + within_two_last_bits_of_time
+
+
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=40)
+@given(
+    q0=st.lists(angles, min_size=2, max_size=2), qd0=st.lists(rates, min_size=2, max_size=2),
+    point=st.tuples(st.floats(-2, 2), st.floats(-2, 2)), angle=angles,
+    step=st.sampled_from([0.1, 0.03]), sense=st.sampled_from([1, -1]),
+)  # fmt: skip
+def test_the_tip_crosses_where_a_dense_scan_of_it_changes_sign(
+    method: str, q0: list[float], qd0: list[float], point: tuple[float, float], angle: float,
+    step: float, sense: int,
+) -> None:  # fmt: skip
+    normal = (np.cos(angle), np.sin(angle))
+    line = ev.TipLine(point, normal)
+    book = pc.Scene.textbook()
+    how = {"method": method, "step": step, "events": [line], "on_failure": "ignore"}
+    sol = pc.simulate(book, q0=q0, qd0=qd0, t_span=(0, 2 * sense), **how)
+    assume(sol.success and np.abs(sol.qd).max() < 50)  # at such rates steps follow it
+    times = np.array([one.t for one in sol.events[0]])
+    theta = np.linspace(0, 1, 2001)
+    for start, h, rows in pieces(sol):
+        q = polynomial.polyval(theta, rows)[:2]
+        tip = np.cos(q).sum(axis=0), np.sin(q).sum(axis=0)
+        g = normal[0] * (tip[0] - point[0]) + normal[1] * (tip[1] - point[1])
+        assume(np.abs(g).min() > 1e-13)
+        here = (times - start) / h
+        between = np.histogram(here[(here >= 0) & (here <= 1)], theta)[0]
+        changes = np.diff(np.sign(g)) != 0
+        assert np.all(between[changes] % 2 == 1)
+        assert np.all(between[~changes] % 2 == 0)

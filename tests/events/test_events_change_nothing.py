@@ -148,6 +148,9 @@ def test_what_a_stopped_run_leaves_ends_at_the_event():
     within = np.linspace(0, end.t, 50)[:-1]
     assert np.array_equal(sol(within), free(within))
     assert sol.stats.accepted == len(sol.t) - 1
+    kept = run(events=sections(terminal=2), ledger=True, rtol=1e-8)
+    assert kept.status == "event"
+    assert abs(kept.energy().ledger.residual[-1]) < 1e-6
 
 
 def test_an_end_just_behind_an_event_cuts_its_step_and_is_a_view():

@@ -134,6 +134,7 @@ def test_a_low_part_of_another_state_is_refused():
         run.resume(2.0, None, 1000, None, None)
 
 
+@pytest.mark.every_value("method")
 @pytest.mark.parametrize("method", METHODS)
 def test_methods_that_cannot_are_refused_by_name(method):
     step = None if METHODS[method]["error_order"] else 0.01

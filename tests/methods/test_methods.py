@@ -206,3 +206,6 @@ def test_no_two_methods_share_a_name_or_a_place_among_second_opinions():
     places = [one["second_opinion"] for one in known_methods().values() if one["second_opinion"]]
     assert sorted(places) == [*range(1, len(places) + 1)]
     assert len(most_accurate()) == len(places)
+    lines = [tuple(one["line"]) for one in known_methods().values()]
+    assert len({*lines}) == len(lines)
+    assert all(one["citation"] for one in known_methods().values())

@@ -210,7 +210,7 @@ def test_a_pair_is_its_first_method_where_nothing_is_stiff(pair):
 
 
 @pytest.mark.parametrize(
-    ("pair", "effects", "q0"),
+    "case",
     [
         *((pair, "damper", START) for pair in [*PAIRS, "auto"]),
         ("auto", "damper and drag", START),
@@ -220,9 +220,9 @@ def test_a_pair_is_its_first_method_where_nothing_is_stiff(pair):
         ("auto", "controller at its limit", START),
     ],
 )
-@pytest.mark.every_value("pair")
-@pytest.mark.every_value("effects")
-def test_a_pair_changes_over_once_and_says_when(pair, effects, q0):
+@pytest.mark.every_value("case")
+def test_a_pair_changes_over_once_and_says_when(case):
+    pair, effects, q0 = case
     sol = run(effects, 5, q0, method=pair, max_steps=30_000)
     assert sol.success, sol.message
     assert sol.stats.stiff

@@ -164,16 +164,14 @@ def rubbed(n):
     return [*changing(n), fx.DryJointFriction(joint=n, coulomb=0.4)]
 
 
-@pytest.mark.parametrize(
-    ("effects", "n"),
-    [
-        *((smooth, n) for n in (1, 2, 3, 5, 9)),
-        *((f, n) for f in (changing, rubbed) for n in (1, 2, 3)),
-    ],
-)
-@pytest.mark.every_value("n")
-@pytest.mark.every_value("effects")
-def test_chains_with_every_effect_that_has_a_series_move_as_other_methods_say(effects, n):
+CARRIED = [(smooth, n) for n in (1, 2, 3, 5, 9)]
+CARRIED += [(effects, n) for effects in (changing, rubbed) for n in (1, 2, 3)]
+
+
+@pytest.mark.every_value("case")
+@pytest.mark.parametrize("case", CARRIED, ids=lambda case: f"{case[0].__name__}-{case[1]}")
+def test_chains_with_every_effect_that_has_a_series_move_as_other_methods_say(case):
+    effects, n = case
     links = [pc.Link(mass=1.0, length=1.0)] * n
     start, t_end, rtol, within = 0.8, 4, 1e-12, 1e-9
     if effects is smooth:

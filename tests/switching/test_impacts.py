@@ -232,3 +232,19 @@ def test_an_impact_sets_a_stuck_joint_free_and_friction_gives_no_impulse(fine):
     np.testing.assert_allclose(after, exact, atol=1e-12)
     assert after[0] > 0.1
     assert sol.qd[-1, 0] == 0.0  # stopped again
+
+
+def test_the_drive_pays_its_share_of_an_impact_on_a_moving_pivot(fine):
+    """The ledger closes over bounces under a driven pivot."""
+    effects = [
+        fx.DrivenPivot(x=fx.Sinusoid(amplitude=0.3, angular_frequency=5.0)),
+        fx.JointStop(joint=1, range=(1.2, 1.9), restitution=0.7),
+        fx.JointStop(joint=2, range=(-0.5, 0.4), restitution=0.4),
+    ]
+    scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * 2, gravity=9.81, effects=effects)
+    sol = pc.simulate(scene, q0=[1.5, 1.6], qd0=0, t_span=(0, 3), ledger=True, **fine)
+    assert sol.success
+    ledger = sol.energy().ledger
+    assert ledger.impact[-1] > 0.1
+    assert (np.diff(ledger.impact) >= -1e-12).all()
+    assert np.abs(ledger.residual).max() < 1e-7

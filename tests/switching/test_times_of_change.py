@@ -66,9 +66,15 @@ def test_no_step_however_long_jumps_over_where_a_sinusoid_is_clipped(rtol, span)
         first, last = impulse(frequency * np.array(span) + phase, amplitude) / frequency
         within = 10 * rtol if amplitude < 1e6 else 1e-6  # of a constant torque there is no error
         assert abs(sol.qd[-1, 0] - (last - first)) < within
+        times = np.linspace(*span, 50)
+        rates = impulse(frequency * times + phase, amplitude) / frequency - first
+        np.testing.assert_allclose(sol(times)[1], rates, atol=10 * within)
         for edge in edges(amplitude, frequency, phase, 10.0):
             assert np.abs(sol.t - edge).min() < 1e-10
     assert sol.stats.accepted < 400
+    if span[0] == 0:  # twenty half periods of a square wave are ten triangles of the rate
+        half = np.pi / 7
+        assert sol(20 * half)[0] == pytest.approx(20 * half**2 / 2, rel=1e-5)
 
 
 KNOTS = np.cumsum([0.0, *np.random.default_rng(8).uniform(0.003, 0.03, 1500)])
