@@ -20,6 +20,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -53,6 +54,7 @@ class Machine:
     runner: Sequence[str]
     left_out: Sequence[str] = (COUNTS_ALLOCATIONS,)
     hashes: dict[str, str] = field(default_factory=dict)
+    folder: Path = Path()
     wrong: str = ""
     seconds: float = 0.0
 
@@ -66,10 +68,15 @@ class Machine:
         found = f"{len(differing)} DIFFER: {', '.join(differing)}" if differing else "all equal"
         return "FAILED" if self.wrong else found
 
-    def build_and_run(self) -> None:
-        began = time.monotonic()
+    def build_there(self) -> None:
         try:
-            folder = built(self.build)
+            self.folder = built(self.build)
+        except (subprocess.CalledProcessError, OSError) as error:
+            self.take(error)
+
+    def run(self) -> None:
+        began, folder = time.monotonic(), self.folder
+        try:
             self.hashes = hashes_in(called(*self.runner, folder / "trajectory_hash"))
             called(*self.runner, folder / "check_fma", str(FMA_CASES))
             left_out = ",".join(name.replace(",", "\\,") for name in self.left_out)
@@ -77,8 +84,11 @@ class Machine:
             if self.build != WEBASSEMBLY:  # which has no threads
                 called(*self.runner, folder / "pendcore_threads")
         except (subprocess.CalledProcessError, OSError) as error:
-            self.wrong = f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
+            self.take(error)
         self.seconds = time.monotonic() - began
+
+    def take(self, error: Exception) -> None:
+        self.wrong = f"{error}\n{getattr(error, 'stdout', '') or ''}".strip()
 
 
 def machines_of(build: str) -> list[Machine]:
@@ -140,8 +150,11 @@ def main() -> int:
     if asked.page and set(asked.builds) != {*PROCESSORS, WEBASSEMBLY, CLANG}:
         parser.error("--page needs all machines: the table has a column for each")
     machines = [one for build in asked.builds for one in machines_of(build)]
-    for one in tqdm(machines, unit="machine", disable=None):
-        one.build_and_run()
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # what is built runs beside the next build
+        for one in tqdm(machines, unit="machine", disable=None):
+            one.build_there()
+            if not one.wrong:
+                pool.submit(one.run)
     for one in machines:
         print(f"{one.build:10} {one.about:36} {one.verdict():12} {one.seconds:5.0f} s")
         print(f"           left out: {'; '.join(one.left_out)}")
