@@ -38,7 +38,7 @@ def are_same(ledger, other):
 def test_a_ledger_has_an_entry_for_each_account_of_the_scene_and_what_is_left_over(sol, ledger):
     assert [*ledger] == ["viscous", "motor", "residual"]
     assert len(ledger) == 3
-    assert set(ledger) <= set(dir(ledger))
+    assert {*dict(ledger)} <= {*dir(ledger)}
     assert ledger.viscous.shape == ledger["motor"].shape == (len(sol.t),)
     assert ledger.viscous[0] == ledger.motor[0] == ledger.residual[0] == 0.0
     assert (np.diff(ledger.viscous) >= 0).all()

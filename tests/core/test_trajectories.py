@@ -47,6 +47,7 @@ def written_out(case: Trajectory, t_end: float, tolerance: float, **options: Any
     return chain.simulate(case.bodies, case.gravity, case.q0, case.qd0, (0.0, t_end), **how)
 
 
+@pytest.mark.every_value("name")
 @pytest.mark.parametrize("method", ["dopri5", "auto"])
 @pytest.mark.parametrize("name", BOUNDS)
 def test_angles_and_rates_follow_the_multiple_precision_ones(name: str, method: str) -> None:

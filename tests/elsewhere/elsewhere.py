@@ -151,10 +151,13 @@ def main() -> int:
         parser.error("--page needs all machines: the table has a column for each")
     machines = [one for build in asked.builds for one in machines_of(build)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:  # what is built runs beside the next build
+        running = []
         for one in tqdm(machines, unit="machine", disable=None):
             one.build_there()
             if not one.wrong:
-                pool.submit(one.run)
+                running.append(pool.submit(one.run))
+        for one_run in running:
+            one_run.result()
     for one in machines:
         print(f"{one.build:10} {one.about:36} {one.verdict():12} {one.seconds:5.0f} s")
         print(f"           left out: {'; '.join(one.left_out)}")
