@@ -19,7 +19,7 @@ DECADES = [10.0**-k for k in range(2, 14)]
 Pair = tuple[float, float]
 Contender = dict[str, Any]
 Entrants = list[Contender]
-"""Who takes part in a case, as `Record.taking_part` lists them."""
+"""The contenders that take part in a case; `Record.taking_part` lists them."""
 
 
 def envelope(points: Iterable[Pair]) -> list[Pair]:

@@ -11,6 +11,7 @@ from pendcore._cases.whole_file import whole_file
 from pendcore._messages.arguments import (
     did_you_mean,
     finite_array,
+    listed,
     number,
     numbers,
     positive,
@@ -20,7 +21,7 @@ from pendcore._messages.arguments import (
     vector,
     whole_number,
 )
-from pendcore._messages.handed_over import hand_over
+from pendcore._messages.handed_over import forget_inner_runs, hand_over
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
@@ -32,7 +33,9 @@ __all__ = [
     "close",
     "did_you_mean",
     "finite_array",
+    "forget_inner_runs",
     "hand_over",
+    "listed",
     "number",
     "numbers",
     "positive",

@@ -7,6 +7,7 @@ pendcore.options.OPTIONS["rtol"].default
 
 from __future__ import annotations
 
+from pendcore._run.call import atol_beside
 from pendcore._run.options import (
     OPTIONS,
     RunOption,
@@ -15,4 +16,11 @@ from pendcore._run.options import (
     with_options,
 )
 
-__all__ = ["OPTIONS", "RunOption", "limits_of_every_method", "require_options", "with_options"]
+__all__ = [
+    "OPTIONS",
+    "RunOption",
+    "atol_beside",
+    "limits_of_every_method",
+    "require_options",
+    "with_options",
+]

@@ -179,7 +179,7 @@ def test_the_dense_output_is_continuous_and_meets_the_steps(method):
     assert np.abs(before - run.y[:, 1:]).max() < 1e-12
 
 
-# What is known of each --------------------------------------------------------------------------
+# The description of each method -----------------------------------------------------------------
 
 
 def test_a_method_without_an_error_estimate_takes_fixed_steps_and_says_so(method):

@@ -16,7 +16,7 @@ from hard_cases.rods import Array, G, mujoco_rods, two_rods
 
 
 class KnownEnd(Scene):
-    """What is measured are the positions at the end, of which `reference` has the true ones."""
+    """A scene whose positions at the end are compared with the true ones of `reference`."""
 
     def positions(self, q: Array) -> Array:
         return q

@@ -22,6 +22,7 @@ from pendcore._accuracy.tuning import (
     BETTER_STILL,
     CAUTION_IF_TIGHT,
     FARTHER,
+    FIRST,
     LEAST_CHANGE,
     LIKELY,
     NOTHING_IN_COMMON,
@@ -38,6 +39,8 @@ class SecondRuns:
     """The strategy that serves every scene."""
 
     method = ""
+    first_aim = FIRST
+    serves_every_trial = True
 
     def correction(self, start: Start, scale: float) -> None:
         """Its trials are made without."""

@@ -19,8 +19,6 @@ from pendcore._accuracy.trials import Strategy, TrialRun, Trials
 from pendcore._accuracy.tuning import (
     AT_FEW_TIMES,
     FARTHER,
-    FIRST,
-    FIRST_BY_DEFECT,
     HOPELESS,
     IF_DAMPED,
     LARGE_ANGLE,
@@ -96,11 +94,11 @@ def search(runs: Trials) -> Solution | Refusal:
 def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
     """Return what a strategy finds; None if it does not tell how large the error is."""
     runs.is_stiff = any(trial.solution.stats.stiff for trial in runs.trials)
-    if strategy.method and runs.is_stiff:
+    if runs.is_stiff and not strategy.serves_every_trial:
         return None
     latest = _first_trial(runs, strategy)
     while True:
-        if strategy.method and latest.solution.stats.stiff:
+        if latest.solution.stats.stiff and not strategy.serves_every_trial:
             return None
         if latest.solution.success:
             for trial in sorted(runs.trials, key=lambda trial: -trial.scale):
@@ -145,13 +143,13 @@ def _first_trial(runs: Trials, strategy: Strategy) -> TrialRun:
     A trial that is too loose to follow the motion to its end is made again.
     """
     runs.strategy = strategy
-    if not strategy.method and runs.trials:
+    if runs.trials and strategy.serves_every_trial:
         return runs.trials[-1]
     if runs.trials:
         scale = runs.trials[-1].scale
         runs.trials.clear()
     else:
-        scale = _first_scale(runs, FIRST_BY_DEFECT if strategy.method else FIRST)
+        scale = _first_scale(runs, strategy.first_aim)
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.t_reached

@@ -74,6 +74,14 @@ class Strategy(Protocol):
     def method(self) -> str:
         """The method of its trials; empty where the error that is asked for chooses it."""
 
+    @property
+    def first_aim(self) -> float:
+        """The multiple of the error asked for at which its first trial aims."""
+
+    @property
+    def serves_every_trial(self) -> bool:
+        """Whether it verifies trials of stiff scenes, and those of the strategies before it."""
+
     def correction(self, start: Start, scale: float) -> DefectCorrection | None:
         """Return what is to look on while a trial of a typical error, ``scale``, is made."""
 

@@ -7,7 +7,7 @@ ValueError.
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from math import inf
 from numbers import Real
@@ -197,6 +197,12 @@ def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
             f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
         )
     return array
+
+
+def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
+    """Return numbers as people read them: six digits, and dots in place of the last of many."""
+    some = [f"{x:.6g}" for x in values[:most]]
+    return ", ".join([*some, "..."] if len(values) > most else some)
 
 
 def _too_large(name: str, unit: str) -> ValueError:

@@ -22,7 +22,7 @@ def silent(message: str) -> None:
 
 
 class Start(NamedTuple):
-    """What is run: a scene, its angles (rad) and rates (rad/s), (n,) each, and when (s)."""
+    """A scene, its angles (rad) and rates (rad/s) at the start, (n,) each, and a span (s)."""
 
     scene: Scene
     q0: npt.ArrayLike
@@ -125,12 +125,6 @@ def supports(method: str, start: Start, step: float | None = None) -> bool:
     except ValueError:
         return False
     return True
-
-
-def forget_inner_runs(stop: BaseException) -> None:
-    """Take from an exception what a run on the way handed over: the user asked for none of them."""
-    for name in ("solution", "estimate", "exponents"):
-        vars(stop).pop(name, None)
 
 
 def tightened(choice: Choice, factor: float, tightest: float) -> Choice:

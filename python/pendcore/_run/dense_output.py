@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats
+from pendcore._messages.handed_over import forget_inner_runs
 from pendcore._messages.progress import callback
-from pendcore._run.call import completed, forget_inner_runs, resumed, silent
+from pendcore._run.call import completed, resumed, silent
 from pendcore._run.solution import Solution
 
 MOST_BYTES = 2**31

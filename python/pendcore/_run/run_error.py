@@ -44,7 +44,7 @@ def require_on_failure(on_failure: object) -> None:
 
 def checked(solution: Solution, on_failure: str) -> Solution:
     """Return a solution; one that is not finished and verified as ``on_failure`` says."""
-    if on_failure == "ignore" or (solution.success and not why_unverified(solution)):
+    if on_failure == "ignore" or (solution.success and not solution.why_unverified):
         return solution
     if on_failure == "raise":
         raise RunError(_complaint(solution), solution)
@@ -56,18 +56,10 @@ def checked(solution: Solution, on_failure: str) -> Solution:
     return solution
 
 
-def why_unverified(solution: Solution) -> str:
-    """Say why a finished run for an error was not verified; empty if it was, or is no such run."""
-    accuracy = solution.accuracy
-    if accuracy is None or accuracy.outcome != "ended early":
-        return ""
-    return f"the run is finished, but not verified: {accuracy.verified_by}"
-
-
 def _complaint(solution: Solution) -> str:
     """Say why a run ended and what continues it; some messages say the latter themselves."""
     if solution.success:
-        return why_unverified(solution)
+        return solution.why_unverified
     t_end, message = solution._run.arguments["t_end"], solution.message
     complaint = (
         f"the run ended before t_end = {t_end:.6g} s, with status {solution.status}: "

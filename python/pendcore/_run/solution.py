@@ -185,6 +185,14 @@ class Solution:
         return self._run.success
 
     @property
+    def why_unverified(self) -> str:
+        """Why a finished run for an ``error`` was not verified in time; empty if nothing is so."""
+        told = self.accuracy
+        if told is None or told.outcome != "ended early":
+            return ""
+        return f"the run is finished, but not verified: {told.verified_by}"
+
+    @property
     def method(self) -> str:
         """Name of the method."""
         return self._run.method
@@ -219,6 +227,11 @@ class Solution:
     def can_resume(self) -> bool:
         """Whether a limit or Ctrl-C ended the run, so that `resume` gets further."""
         return self.status in ("max_steps", "max_turns", "time_limit", "interrupted")
+
+    @property
+    def keeps_every_step(self) -> bool:
+        """Whether the kept times are those of the steps, and not those asked for."""
+        return self.store in ("dense", "steps") and self._run.arguments["t_eval"] is None
 
     @property
     def stats(self) -> Statistics:

@@ -58,12 +58,6 @@ class EnergyDrift(NamedTuple):
         return f"{told}; {TOO_LARGE}" if self.too_large else told
 
 
-def has_every_step(solution: Solution) -> bool:
-    """Whether the kept times are those of the steps, and not those asked for."""
-    asked_for = solution._run.arguments["t_eval"] is not None
-    return solution.store in ("dense", "steps") and not asked_for
-
-
 def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     """Compute the drift from the states that were kept, or from one state in so many."""
     run, asked = solution._run, solution._run.arguments
@@ -83,7 +77,7 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
             bad = not np.isfinite(ends[1])
             return EnergyDrift(*ends, None, moving, None, bad, working, ledger=False)
         drift = residual
-    elif every > 1 or not has_every_step(solution):
+    elif every > 1 or not solution.keeps_every_step:
         moving = max(moving, float(total[0]) - _lowest_potential(solution.scene))
     # The last bits of the potential energy are no drift, however slow the motion.
     allowed = 1e-3 * moving + 1e-13 * float(np.abs(potential).max())

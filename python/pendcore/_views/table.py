@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 
 import numpy as np
 
 from pendcore._cases.case import has_own_functions
-from pendcore._messages.arguments import Floats
+from pendcore._messages.arguments import Floats, listed
 from pendcore._messages.html import beside, drawing, table
 from pendcore._run.curve import curve_of, span_of
 from pendcore._run.dense_output import with_dense_output
@@ -76,12 +75,6 @@ def _places(solution: Solution, t: Floats, states: Floats) -> Floats:
     right = np.isfinite(states).all(axis=1)
     q = np.ascontiguousarray(states[right, : len(solution.scene.links)])
     return solution.scene._compiled.positions(t[right], q)
-
-
-def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
-    """Return numbers as people read them: six digits, and dots in place of the last of many."""
-    some = [f"{x:.6g}" for x in values[:most]]
-    return ", ".join([*some, "..."] if len(values) > most else some)
 
 
 def outcome(status: str, message: str) -> str:

@@ -116,7 +116,7 @@ def execute(args: argparse.Namespace) -> int:
         print(files.outcome(), file=sys.stderr)
         if not solution.success:
             complaint = f"the run is not complete: {solution.message}"
-        complaint = complaint or _why_unverified(solution)
+        complaint = complaint or solution.why_unverified
         if complaint:
             print(complaint, file=sys.stderr)
         if solution.can_resume and "solution.npz" not in files.left_out:
@@ -145,13 +145,6 @@ def _simulated(case: Case, args: argparse.Namespace) -> tuple[Solution, str, str
         if isinstance(so_far := getattr(stop, "solution", None), Solution):
             return so_far, str(stop) or "interrupted", str(stop)
         raise
-
-
-def _why_unverified(solution: Solution) -> str:
-    told = solution.accuracy
-    if told is None or told.outcome != "ended early":
-        return ""
-    return f"the run is finished, but not verified: {told.verified_by}"
 
 
 def _options_of(args: argparse.Namespace) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict
 from math import degrees, isfinite
 from textwrap import wrap
@@ -12,6 +12,7 @@ import numpy as np
 
 from pendcore import Accuracy, Case, Solution, build
 from pendcore.effects import Effect, Part
+from pendcore.messages import listed
 from pendcore.methods import evaluations
 
 _MANY = 12
@@ -25,7 +26,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
     """
     case, end = solution.case(), solution.y_reached
     n = len(case.scene.links)
-    drift, keeps_steps = solution.energy_drift(), solution.store in ("dense", "steps")
+    drift = solution.energy_drift()
     found = {
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
@@ -47,7 +48,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "ledger": _ledger(solution),
         "kept": {
             "times": len(solution.t),
-            "every_step": keeps_steps and solution.options["t_eval"] is None,
+            "every_step": solution.keeps_every_step,
             "between_steps": solution.store == "dense",
         },
         "largest_reactions": [one._asdict() for one in solution.largest_reactions()],
@@ -168,12 +169,6 @@ def _largest_reactions(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if not kept["between_steps"]:
         times = kept["times"]
         yield "" if times else "largest reaction", f"among the {times} kept time{'s'[: times != 1]}"
-
-
-def listed(values: Sequence[float], most: int = 6) -> str:
-    """Return numbers as people read them: six digits, and dots in place of the last of many."""
-    some = [f"{x:.6g}" for x in values[:most]]
-    return ", ".join([*some, "..."] if len(values) > most else some)
 
 
 def _state(at: dict[str, Any], in_degrees: bool = False) -> str:

@@ -16,11 +16,12 @@ import numpy.typing as npt
 
 from pendcore import ErrorEstimate, LyapunovExponents, Scene, lyapunov
 from pendcore.cost.horizon_work import HorizonPoint, HorizonWork
-from pendcore.cost.runs import Start, atol_beside, forget_inner_runs
+from pendcore.cost.runs import Start
 from pendcore.messages import (
     Progress,
     callback,
     close,
+    forget_inner_runs,
     hand_over,
     numbers,
     positive,
@@ -30,6 +31,7 @@ from pendcore.messages import (
     time_span,
 )
 from pendcore.methods import has_error_estimate, known_methods, methods_named
+from pendcore.options import atol_beside
 
 METHODS = ("dopri5", "dop853", "taylor")
 """The methods that are tried by default, where they support the scene."""

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import pendcore as pc
-from pendcore.cost.runs import Start, atol_beside
+from pendcore.cost.runs import Start
 from pendcore.methods import implicit_method, methods_of, most_accurate, pair_of, tightest_rtol
+from pendcore.options import atol_beside
 
 if TYPE_CHECKING:
     import numpy.typing as npt

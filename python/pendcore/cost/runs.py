@@ -12,7 +12,7 @@ from pendcore.methods import known_methods
 
 
 class Start(NamedTuple):
-    """What is run: a scene, its angles (rad) and rates (rad/s), (n,) each, and when (s)."""
+    """A scene, its angles (rad) and rates (rad/s) at the start, (n,) each, and a span (s)."""
 
     scene: pc.Scene
     q0: npt.ArrayLike
@@ -40,14 +40,3 @@ class Start(NamedTuple):
         except ValueError:
             return False
         return True
-
-
-def atol_beside(rtol: float) -> float:
-    """Return the absolute tolerance, rad and rad/s, of runs of which rtol alone is chosen."""
-    return float(f"{rtol / 1000:g}")
-
-
-def forget_inner_runs(stop: BaseException) -> None:
-    """Take from an exception what a run on the way handed over: the user asked for none of them."""
-    for name in ("solution", "estimate", "exponents"):
-        vars(stop).pop(name, None)

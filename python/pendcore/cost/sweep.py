@@ -12,12 +12,13 @@ import numpy.typing as npt
 from pendcore import Scene
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.measurement import Measurement
-from pendcore.cost.runs import Start, atol_beside, forget_inner_runs
+from pendcore.cost.runs import Start
 from pendcore.messages import (
     Progress,
     callback,
     close,
     finite_array,
+    forget_inner_runs,
     hand_over,
     number,
     require_scene,
@@ -30,7 +31,12 @@ from pendcore.messages import (
     whole_number,
 )
 from pendcore.methods import methods_named
-from pendcore.options import limits_of_every_method, require_options, with_options
+from pendcore.options import (
+    atol_beside,
+    limits_of_every_method,
+    require_options,
+    with_options,
+)
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Reader(Enum):
-    r"""Who reads.
+    r"""A kind of reader, for whom a document is written.
 
     ``PEOPLE``, and the programs they view Markdown with: equations are numbered by ``\tag``.
     ``HTML`` and ``PDF`` are pandoc, which converts the Markdown; its MathML knows no ``\tag``.

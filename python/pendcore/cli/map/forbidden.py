@@ -29,9 +29,9 @@ def is_forbidden(
 
     Nothing is known of scenes with effects, and of other events.
     """
-    kinetic, potential = scene.energy(0.0, q0, np.broadcast_to(qd0, np.shape(q0)))
     if scene.effects or not isinstance(event, LinkAngle):
-        return np.zeros(kinetic.shape, dtype=bool)
+        return np.zeros(np.shape(q0)[:-1], dtype=bool)
+    kinetic, potential = scene.energy(0.0, q0, np.broadcast_to(qd0, np.shape(q0)))
     mass = np.array([link.mass for link in scene.links])
     length = np.array([link.length for link in scene.links])
     beyond = np.cumsum(mass[::-1])[::-1] - mass

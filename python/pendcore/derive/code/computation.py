@@ -14,7 +14,7 @@ from pendcore.derive.motion import Assignments, needed
 
 
 class Computation(NamedTuple):
-    """What is assigned first, each in terms of what is known before, and the results."""
+    """Assignments, each of which needs only those before it, and the results."""
 
     assignments: Assignments
     results: tuple[Expr, ...]
