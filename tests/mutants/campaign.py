@@ -16,21 +16,26 @@ import json
 import subprocess
 import sys
 import time
-from collections import Counter
-from collections.abc import Iterator
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict
-from itertools import islice
+from itertools import islice, takewhile
+from os import cpu_count
 from pathlib import Path
+from queue import SimpleQueue
 from random import Random
 from typing import Any
 
 from tqdm import tqdm
 
 from mutants.mutation import PARSERS, Mutant, mutants
-from mutants.workshop import ROOT, SOURCE, Workshop
+from mutants.workshop import ROOT, SOURCE, Outcome, Place, Workshop
 
 PARTS = {"core": ["cpp/src", "cpp/include", "cpp/bindings"], "package": ["python/pendcore"]}
 COUNTED = ("killed", "alive")
+AT_ONCE = cpu_count() or 1
+"""So many mutants of the package are tested at once; the core is built for one at a time."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -51,36 +56,64 @@ def main(arguments: list[str] | None = None) -> int:
     if any(source.items() - one.items() for one in told):
         parser.error(f"{record} is of another commit or seed: give another --record")
     workshop = Workshop(source["commit"])
-    if (plain := workshop.measured()).what != "alive":
+    if asked.part == "package" and (plain := workshop.measured()).what != "alive":
         print(f"the tests fail without a mistake: {plain.by}")
         return 1
-    mutants_drawn = enumerate(drawn(asked.part, asked.seed))
+    tested: Callable[[Mutant], Outcome] = workshop.tested
+    if asked.part == "package":
+        places: SimpleQueue[Place] = SimpleQueue()
+        for number in range(AT_ONCE):
+            places.put(Place(workshop, number))
+
+        def tested(mutant: Mutant) -> Outcome:
+            place = places.get()
+            try:
+                return place.tested(mutant)
+            finally:
+                places.put(place)
 
     def tried(number: int, mutant: Mutant) -> dict[str, Any]:
         start = time.monotonic()
-        outcome = workshop.tested(mutant)
+        outcome = tested(mutant)
         seconds = round(time.monotonic() - start, 1)
         found = {"outcome": outcome.what, "by": outcome.by, "seconds": seconds}
         return {"number": number, **source, **asdict(mutant), **found}
 
+    mutants_drawn = enumerate(drawn(asked.part, asked.seed))
     if asked.only is not None:
         print(json.dumps(tried(*next(islice(mutants_drawn, asked.only, None))), indent=1))
         return 0
-    began = time.monotonic()
+    until = time.monotonic() + asked.seconds
     counted = sum(one["outcome"] in COUNTED for one in told)
+    left = takewhile(
+        lambda _: counted < asked.count and time.monotonic() < until,
+        islice(mutants_drawn, len(told), None),
+    )
     record.parent.mkdir(parents=True, exist_ok=True)
     with tqdm(total=asked.count, initial=counted, unit="mutant", disable=None) as bar:
-        for number, mutant in islice(mutants_drawn, len(told), None):
-            if counted >= asked.count or time.monotonic() - began > asked.seconds:
-                break
-            told.append(tried(number, mutant))
+        for one in in_order(tried, left, AT_ONCE if asked.part == "package" else 1):
+            told.append(one)
             with record.open("a") as lines:
-                print(json.dumps(told[-1]), file=lines)
-            if told[-1]["outcome"] in COUNTED:
+                print(json.dumps(one), file=lines)
+            if one["outcome"] in COUNTED:
                 counted += 1
                 bar.update()
     print(report(told))
     return 0
+
+
+def in_order(
+    function: Callable[..., dict[str, Any]], given: Iterable[tuple[Any, ...]], at_once: int
+) -> Iterator[dict[str, Any]]:
+    """Yield the results of calls, some of which run at once, in the order of what is given."""
+    with ThreadPoolExecutor(at_once) as pool:
+        waiting: deque[Future[dict[str, Any]]] = deque()
+        for one in given:
+            waiting.append(pool.submit(function, *one))
+            if len(waiting) > 3 * at_once:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()
 
 
 def drawn(part: str, seed: int) -> Iterator[Mutant]:

@@ -19,7 +19,9 @@ patch = subprocess
 """A line that runs in a process of its own counts as run outside a test."""
 
 TestsOfLines = dict[str, dict[int, list[str]]]
-"""By file and line, the tests that run it; the empty name is for what runs outside a test."""
+"""By file and line, the tests that run it."""
+OUTSIDE = ""
+"""The name for what runs outside a test."""
 
 
 def told(data_file: Path, source: Path) -> TestsOfLines:
@@ -45,8 +47,7 @@ def tests_that_run(tests: TestsOfLines, path: str, source: str, line: int) -> li
     """Return the tests that run the statement on a line."""
     of_file = tests.get(path, {})
     begin, end = statement_at(source, line)
-    found = {test for one in range(begin, end + 1) for test in of_file.get(one, [])} - {""}
-    return sorted(found)
+    return sorted({test for one in range(begin, end + 1) for test in of_file.get(one, [])})
 
 
 def statement_at(source: str, line: int) -> tuple[int, int]:

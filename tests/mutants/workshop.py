@@ -1,7 +1,8 @@
-"""Where mutants are built and tested: a clone, its core, and a package beside the installed one."""
+"""Where mutants are built and tested: a clone, its core, and packages beside the installed one."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -18,10 +19,12 @@ import pybind11
 from mutants import coverage_of_tests as coverage
 from mutants.mutation import Mutant
 from mutants.related import related_first
+from mutants.server import UNENDING
 
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
 SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
+SERVER = Path(__file__).with_name("server.py")
 TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 KINDS = ("not outside_build", "outside_build")
 """The tests that build something outside the project come last."""
@@ -29,6 +32,11 @@ SILENT = 180.0
 """A test that takes so long has lost its way, s."""
 PATIENCE = 1800.0
 """No build and no run of all tests takes so long, s."""
+
+PYTEST = [
+    "-q", "-x", "-p", "no:cacheprovider", "--hypothesis-seed=0",
+    "-o", f"faulthandler_timeout={SILENT:g}", "-o", "faulthandler_exit_on_timeout=true",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -44,7 +52,9 @@ class Workshop:
 
     def __init__(self, commit: str) -> None:
         self.commit = commit
-        self.environment = os.environ | {"PYTHONPATH": str(SITE), "MPLBACKEND": "Agg"}
+        self.environment = os.environ | {
+            "PYTHONPATH": str(SITE), "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1",
+        }  # fmt: skip
         if not (SOURCE / ".git").exists():
             shutil.rmtree(PLACE, ignore_errors=True)
             run(["git", "clone", "--quiet", ROOT, SOURCE])
@@ -83,21 +93,11 @@ class Workshop:
         return Outcome("alive")
 
     def tested(self, mutant: Mutant) -> Outcome:
-        """Return what becomes of a mutant; those tests run first that speak of its file."""
-        tests, kinds = related_first(SOURCE, mutant.path), KINDS
+        """Return what becomes of a mutant of the core; those tests run first that speak of it."""
         file = SOURCE / mutant.path
         right = file.read_bytes()
-        wrong = mutant.applied(right)
-        if mutant.path.endswith(".py"):
-            file = SITE / mutant.path.removeprefix("python/")
-            if not compiles(wrong):
-                return Outcome("no program")
-            if known := self.those_that_run(mutant, right.decode(), tests):
-                tests, kinds = known, KINDS[:1]  # what is built outside is the core
-        file.write_bytes(wrong)
+        file.write_bytes(mutant.applied(right))
         try:
-            if mutant.path.endswith(".py"):
-                return self.asked_of_tests(tests, kinds)
             if not self.built():
                 return Outcome("no program")
             file.write_bytes(right)  # tests that build anew build what is right
@@ -105,22 +105,23 @@ class Workshop:
             if self.bytes_of_core() == self.core:
                 return Outcome("same program")
             outcome = self.asked_of_ctest()
+            tests = related_first(SOURCE, mutant.path)
             return outcome if outcome.what == "killed" else self.asked_of_tests(tests)
         finally:
             file.write_bytes(right)
 
-    def those_that_run(self, mutant: Mutant, source: str, files: list[str]) -> list[str]:
-        """Return the tests that run the line of a mutant, or may in a process of their own.
+    def those_that_run(self, mutant: Mutant) -> list[str]:
+        """Return the tests that run the line of a mutant of the package.
 
-        There are none where it runs outside tests alone.
+        A line that runs in a process of its own may be run by any test that starts one.
         """
+        source = (SOURCE / mutant.path).read_text()
         path = mutant.path.removeprefix("python/")
         tests = coverage.tests_that_run(self.tests_of_lines, path, source, mutant.line)
-        if not tests:
-            return []
-        tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
-        place = {file: i for i, file in enumerate(files)}
-        return sorted(tests, key=lambda test: place.get(test.partition("::")[0], len(place)))
+        if not tests or coverage.OUTSIDE in tests:
+            files = related_first(SOURCE, mutant.path)
+            tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
+        return [test for test in tests if test != coverage.OUTSIDE]
 
     def built(self) -> bool:
         targets = ["all", "tests/cpp/all"]
@@ -146,10 +147,16 @@ class Workshop:
     ) -> Outcome:
         """Run tests of `make test` in an order until one fails."""
         pytest = [
-            sys.executable, "-m", "pytest", "-q", "-x", "-n", "auto", "--maxschedchunk", "8",
-            "-p", "no:cacheprovider", "-o", f"faulthandler_timeout={SILENT:g}",
-            "-o", "faulthandler_exit_on_timeout=true", "--hypothesis-seed=0", *more,
-        ]  # fmt: skip
+            sys.executable,
+            "-m",
+            "pytest",
+            *PYTEST,
+            "-n",
+            "auto",
+            "--maxschedchunk",
+            "8",
+            *more,
+        ]
         names = PLACE / "tests.txt"  # they may be more than a command takes
         names.write_text("\n".join(tests))
         for chosen in kinds:
@@ -173,6 +180,55 @@ class Workshop:
             os.killpg(process.pid, signal.SIGKILL)
             raise
         return process.returncode, said
+
+
+class Place:
+    """A package of its own, in which one mutant at a time is tested, beside others."""
+
+    def __init__(self, workshop: Workshop, number: int) -> None:
+        self.workshop, self.folder = workshop, PLACE / f"place-{number}"
+        self.site = self.folder / "site"
+        shutil.rmtree(self.folder, ignore_errors=True)
+        shutil.copytree(SITE, self.site)
+        self.server = subprocess.Popen(
+            [sys.executable, SERVER], cwd=SOURCE, env=workshop.environment, text=True,
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        )  # fmt: skip
+
+    def tested(self, mutant: Mutant) -> Outcome:
+        """Return what becomes of a mutant of the package."""
+        file = self.site / mutant.path.removeprefix("python/")
+        right = file.read_bytes()
+        wrong = mutant.applied(right)
+        if not compiles(wrong):
+            return Outcome("no program")
+        file.write_bytes(wrong)
+        try:
+            code, said = self.run(self.workshop.those_that_run(mutant))
+        finally:
+            file.write_bytes(right)
+        if code in (0, 5):  # 5: no test is chosen
+            return Outcome("alive")
+        by = first(r"^(?:FAILED|ERROR) (\S+)", said) or first(r"^(Timeout .*)", said)
+        if not by and code != UNENDING:
+            raise RuntimeError(f"pytest did not run: {said[-1000:]}")
+        return Outcome("killed", by or "a run without end")
+
+    def run(self, tests: list[str]) -> tuple[int, str]:
+        """Return how pytest ended with these tests, and what it said."""
+        output = self.folder / "output.txt"
+        order = {
+            "site": str(self.site), "tests": tests, "output": str(output), "patience": PATIENCE,
+            "seconds": str(self.folder / "seconds.json"),
+            "arguments": [*PYTEST, "-m", KINDS[0], *sorted({t.partition("::")[0] for t in tests})],
+        }  # fmt: skip
+        if not tests:
+            return 5, ""
+        assert self.server.stdin is not None
+        assert self.server.stdout is not None
+        print(json.dumps(order), file=self.server.stdin, flush=True)
+        code = int(self.server.stdout.readline())
+        return code, output.read_text(errors="replace")
 
 
 def compiles(source: bytes) -> bool:
