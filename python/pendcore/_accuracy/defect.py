@@ -9,8 +9,8 @@ import numpy as np
 from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.progress import Progress, callback, close
-from pendcore._run.methods import known_methods
 from pendcore._scene.scene import Scene
+from pendcore.methods import known_methods
 
 STEPS_AT_ONCE = 2000
 """The number of steps between two reports of progress."""

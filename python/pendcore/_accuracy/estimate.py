@@ -41,8 +41,8 @@ from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._run.call import Choice, Start, resumed, run, start_of, tightened
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.methods import TIGHTEST
 from pendcore._run.solution import Solution
+from pendcore.methods import TIGHTEST
 
 Report: TypeAlias = Callable[[float], object]
 

@@ -13,20 +13,19 @@ from pendcore._messages.arguments import no_time_span, number
 from pendcore._messages.progress import ProgressBar, callback, close
 from pendcore._messages.warning import warn
 from pendcore._run.call import Start, completed
-from pendcore._run.events import events_asked_for
-from pendcore._run.keywords import RunKeywords
-from pendcore._run.methods import described_methods
-from pendcore._run.options import (
+from pendcore._run.run_error import checked, require_on_failure
+from pendcore._run.solution import Solution
+from pendcore._scene.scene import Scene, require_scene
+from pendcore.events import events_asked_for
+from pendcore.options import (
     ERROR,
     ON_FAILURE,
     OPTIONS,
     RUN_DEFAULTS,
+    RunKeywords,
     require_options,
     with_options,
 )
-from pendcore._run.run_error import checked, require_on_failure
-from pendcore._run.solution import Solution
-from pendcore._scene.scene import Scene, require_scene
 
 
 @with_options()
@@ -129,9 +128,6 @@ def simulate(
             close(report)
         return solution
     return checked(completed(solution, report), on_failure)
-
-
-simulate.__doc__ = described_methods(simulate.__doc__)
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:

@@ -26,12 +26,12 @@ from pendcore._messages.progress import Progress, callback, close
 from pendcore._messages.warning import silence
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.events import Function
 from pendcore._run.solution import Solution
 from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
-from pendcore.effects import effect_of
+from pendcore.effects import KINDS, made
+from pendcore.events import Function
 
 _RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
@@ -142,5 +142,5 @@ def _scene(state: dict[str, Any]) -> Scene:
     names = ("mass", "length", "center", "inertia")
     rows = state["links"].reshape(-1, 4).tolist()
     links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
-    effects = [effect_of(kind, values) for kind, values in json.loads(state["effects"])]
+    effects = [made(KINDS[kind], values) for kind, values in json.loads(state["effects"])]
     return Scene._unpickled(links, state["gravity"], effects)

@@ -15,10 +15,10 @@ from pendcore._ensemble.reducers import FirstEvent, Reducer
 from pendcore._ensemble.request import Request
 from pendcore._messages.arguments import Floats
 from pendcore._messages.warning import silence
-from pendcore._run.events import Event, Function
 from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.parameters import check_parameter_names
 from pendcore._scene.scene import Scene
+from pendcore.events import Event, Function
 
 VERSION, CASE, KEEP, VARY = "pendcore", "case", "keep", "vary"
 SHAPE, BLOCK = "shape", "block_shape"

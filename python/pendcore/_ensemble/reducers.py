@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from pendcore._run.events import Event
+from pendcore.events import Event
 
 
 class Reducer:

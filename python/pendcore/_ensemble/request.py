@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._ensemble.reducers import FirstEvent, LargestExponent, Reducer
 from pendcore._messages.arguments import Floats
-from pendcore._run.events import Event
+from pendcore.events import Event
 
 NOT_RUN: int = _core.member_statuses.index("not_run")
 

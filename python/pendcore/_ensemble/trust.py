@@ -25,7 +25,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.sampling import uniform
 from pendcore._messages.arguments import Floats
 from pendcore._run.call import Choice, Start, run, tightened
-from pendcore._run.methods import TIGHTEST
+from pendcore.methods import TIGHTEST
 
 ANGLE = 0.1
 """rad and rad/s: states that are farther apart are not the same."""

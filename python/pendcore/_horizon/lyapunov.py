@@ -15,10 +15,10 @@ from pendcore._accuracy.position_error import time_grid
 from pendcore._messages.arguments import Floats, number, time_span
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._messages.warning import warn
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._run.solution import Solution
 from pendcore._run.statistics import Statistics
 from pendcore._scene.scene import Scene, require_scene
+from pendcore.options import RUN_DEFAULTS
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D

@@ -11,10 +11,10 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import Progress, callback, close
-from pendcore._run.methods import known_methods
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._run.solution import Solution
 from pendcore._scene.scene import Scene
+from pendcore.methods import known_methods
+from pendcore.options import RUN_DEFAULTS
 
 
 def silent(message: str) -> None:
@@ -47,11 +47,6 @@ class Choice(NamedTuple):
     rtol: npt.ArrayLike
     atol: npt.ArrayLike
     compensated: bool = False
-
-
-def atol_beside(rtol: float) -> float:
-    """Return the absolute tolerance, rad and rad/s, of runs of which rtol alone is chosen."""
-    return float(f"{rtol / 1000:g}")
 
 
 def run(

@@ -19,13 +19,11 @@ from pendcore._messages.progress import Progress
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.events import Event, event_of
-from pendcore._run.found_events import FoundEvents, found_events
-from pendcore._run.keywords import OnFailure
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._run.statistics import Statistics
 from pendcore._scene.scene import Scene
+from pendcore.events import Event, FoundEvents, event_of, found_events
+from pendcore.options import RUN_DEFAULTS, OnFailure
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,6 +6,7 @@ and the pages in docs/effects.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from textwrap import wrap
@@ -258,15 +259,11 @@ def _effect_example(effect: Description) -> Iterator[str]:
 
 def _part_example(name: str) -> Iterator[str]:
     """Yield lines that make an effect with a part, and show the part, if there is an example."""
-    made = f"={name}("
-    for call in (call for effect in effects() for call in effect.calls if made in call):
-        before, _, after = call.partition(made)
-        ends = (k for k, sign in enumerate(after, 1) if sign == ")")
-        end = next(k for k in ends if after[:k].count(")") > after[:k].count("("))
-        yield _assignment(call, [name])
-        yield f">>> effect.{before.replace('(', ' ').split()[-1]}"
-        yield f"{name}({after[:end]}"
-        return
+    as_argument = re.compile(rf"(\w+)=({name}\((?:[^()]|\([^()]*\))*\))")
+    for call in (call for effect in effects() for call in effect.calls):
+        if found := as_argument.search(call):
+            yield from (_assignment(call, [name]), f">>> effect.{found[1]}", found[2])
+            return
 
 
 def _assignment(call: str, parts: Iterable[str] = ()) -> str:
