@@ -8,7 +8,7 @@ pendcore.methods.most_accurate()                            # which serve as ref
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
 from typing import Any
@@ -43,14 +43,6 @@ def implicit_method() -> str:
     return next(str(one["name"]) for one in known_methods().values() if one["kind"] == "implicit")
 
 
-def line_style(method: str) -> dict[str, Any]:
-    """Return how figures draw a method: matplotlib's colour, dash and marker."""
-    color, dash, marker = known_methods()[method]["line"]
-    lengths = tuple(float(one) for one in dash.split()) if dash[0].isdigit() else None
-    linestyle = dash if lengths is None else (0, lengths)
-    return {"color": color, "linestyle": linestyle, "marker": marker}
-
-
 def sentences() -> list[str]:
     """Return what docstrings say of each method, after its names."""
     names_of: dict[str, list[str]] = {}  # one sentence may describe several, such as the pairs
@@ -58,36 +50,6 @@ def sentences() -> list[str]:
         names = [f'``"{name}"``' for name in (one["name"], *one["aliases"])]
         names_of.setdefault(one["sentence"], []).extend(names)
     return [f"{', '.join(names)}: {sentence}" for sentence, names in names_of.items()]
-
-
-def methods_named(methods: str | Iterable[str]) -> list[str]:
-    """Return the names of methods to compare, without aliases and each once.
-
-    ``"auto"`` is refused: it may choose a different method at each tolerance.
-    """
-    names = {alias: name for name, m in known_methods().items() for alias in (name, *m["aliases"])}
-    try:
-        listed = [methods] if isinstance(methods, str) else list(methods)
-    except TypeError:
-        raise TypeError(f"methods = {methods!r}: must be names of methods, or one") from None
-    if not listed:
-        raise ValueError("methods: is empty: must name a method, or be left out")
-    for method in listed:
-        if method not in names:
-            what = "is a rule that chooses one" if method == "auto" else "is none"
-            raise ValueError(f"methods: {method!r} {what}: known are {', '.join(names)}")
-    return [*dict.fromkeys(names[method] for method in listed)]
-
-
-def methods_of(method: str) -> set[str]:
-    """Return a method's name and, for a pair, the names of its two methods."""
-    known = known_methods()[method]
-    return {method, known["first"], known["second"]} - {""}
-
-
-def has_error_estimate(method: str) -> bool:
-    """Return whether a method chooses its steps from tolerances."""
-    return bool(known_methods()[method]["error_order"])
 
 
 def pair_of(first: str) -> str:
@@ -107,20 +69,10 @@ def evaluations(method: str, last_method: str, nfev: int) -> str:
     return f"{nfev} series, each as long as many right-hand sides"
 
 
-def tightest_rtol(method: str) -> float:
-    """Return the rtol below which a run by a method gets no more accurate."""
-    return TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST
-
-
 __all__ = [
     "evaluations",
-    "has_error_estimate",
     "implicit_method",
     "known_methods",
-    "line_style",
-    "methods_named",
-    "methods_of",
     "most_accurate",
     "pair_of",
-    "tightest_rtol",
 ]

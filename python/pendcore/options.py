@@ -127,11 +127,6 @@ def atol_beside(rtol: float) -> float:
     return float(f"{rtol / 1000:g}")
 
 
-def limits_of_every_method(option: RunOption) -> bool:
-    """Whether a comparison of methods takes an option, for all of them."""
-    return option.limits_every_method
-
-
 def require_options(given: Iterable[str], function: Callable[..., Any]) -> None:
     """Raise a TypeError for a keyword that is none of a function's, whose options are shown."""
     known = [*signature(function).parameters]
@@ -188,7 +183,6 @@ __all__ = [
     "OPTIONS",
     "RunOption",
     "atol_beside",
-    "limits_of_every_method",
     "require_options",
     "with_options",
 ]

@@ -78,6 +78,7 @@ PYTHON_LAYERS = [
 LAYER_OF_PUBLIC_MODULE = {
     "effects": "_scene",
     **dict.fromkeys(("events", "methods", "options"), "_run"),
+    **dict.fromkeys(("reducers", "sampling"), "_ensemble"),
 }
 """Where the package's own files are more than names of what stands elsewhere."""
 EXTRAS = PYTHON_LAYERS[PYTHON_LAYERS.index("pendcore") + 1 :]

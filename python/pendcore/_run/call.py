@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.handed_over import hand_over
+from pendcore._messages.handed_over import raise_with
 from pendcore._messages.progress import Progress, callback, close
 from pendcore._run.solution import Solution
 from pendcore._scene.scene import Scene
@@ -91,13 +91,7 @@ def resumed(
 def completed(result: Solution, report: Callable[[float], object] | None) -> Solution:
     """End the bar of a run; if an exception broke it off, raise that with the run so far."""
     close(report)
-    error = result._run.take_error()
-    if error is not None:
-        hand_over(error, solution=result)
-        try:
-            raise error
-        finally:
-            del error  # its traceback holds this frame: it would wait for the collector
+    raise_with(result._run.take_error(), solution=result)
     return result
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
-from textwrap import wrap
+from textwrap import fill
 from typing import Any, NamedTuple
 
 from pendcore import _core
@@ -210,31 +210,31 @@ def type_in_words(parameter: Parameter) -> str:
 
 def docstring(described: Description) -> str:
     """Return the docstring of a class."""
-    return "\n".join(_lines(described))
+    return "\n\n".join(_sections(described))
 
 
-def _lines(described: Description) -> Iterator[str]:
+def _sections(described: Description) -> Iterator[str]:
     yield described.sentence
     if described.law:
-        yield ""
-        yield "Law::"
-        yield ""
-        yield from wrap(described.law, 92, initial_indent="    ", subsequent_indent="        ")
-    yield from ("", "Parameters", "----------")
-    for parameter in described.parameters:
-        yield f"{parameter.name} : {type_in_words(parameter)}"
-        yield from wrap(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
-    yield from ("", "Raises", "------", "ValueError, TypeError")
-    yield "    If a value is not allowed; the message gives the value, its range and its unit."
+        inner = fill(described.law, 92, initial_indent="    ", subsequent_indent="        ")
+        yield f"Law::\n\n{inner}"
+    parameters = (
+        f"{parameter.name} : {type_in_words(parameter)}\n"
+        + fill(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
+        for parameter in described.parameters
+    )
+    yield "\n".join(["Parameters\n----------", *parameters])
+    yield (
+        "Raises\n------\nValueError, TypeError\n"
+        "    If a value is not allowed; the message gives the value, its range and its unit."
+    )
     if described.source:
-        yield from ("", "Notes", "-----")
-        yield from wrap(f"Source: {described.source}.", 92)
+        yield "Notes\n-----\n" + fill(f"Source: {described.source}.", 92)
     if described.account in CAVEATS:
-        yield ""
-        yield from wrap(CAVEATS[described.account], 92)
-    example = [*(_effect_example(described) if described.kind else _part_example(described.name))]
-    if example:
-        yield from ("", "Examples", "--------", *example)
+        yield fill(CAVEATS[described.account], 92)
+    example = _effect_example(described) if described.kind else _part_example(described.name)
+    if lines := "\n".join(example):
+        yield f"Examples\n--------\n{lines}"
 
 
 def _effect_example(effect: Description) -> Iterator[str]:

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pendcore._messages.arguments import number
+from pendcore._scene.parametrized import Parametrized
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
-class Link:
+class Link(Parametrized):
     """One rigid link of the chain; a uniform rod unless said otherwise.
 
     Parameters
@@ -65,10 +66,9 @@ class Link:
             inertia = mass * length * length / 12  # in this order, as in the core: the same bits
         else:
             inertia = number("inertia", inertia, "kg m^2")
-        object.__setattr__(self, "mass", mass)
-        object.__setattr__(self, "length", length)
-        object.__setattr__(self, "center", center)
-        object.__setattr__(self, "inertia", inertia)
+        values = {"mass": mass, "length": length, "center": center, "inertia": inertia}
+        for name, value in values.items():
+            self._set(name, value)
 
     @classmethod
     def point_mass(cls, *, mass: float, length: float) -> Link:
@@ -125,6 +125,3 @@ class Link:
         if self.inertia != rod.inertia:
             values["inertia"] = self.inertia
         return values
-
-    def __repr__(self) -> str:
-        return f"Link({', '.join(f'{name}={x!r}' for name, x in self.particulars().items())})"
