@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats, flag, function, number, numbers, whole_number
-from pendcore._scene.parametrized import OfFunction, Parametrized
+from pendcore._scene.parametrized import OfFunction, Parametrized, tuple_of
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -60,7 +60,7 @@ class Event(Parametrized):
         for f in fields(self):
             given = getattr(self, f.name)
             if given is not f.default:
-                self._set(f.name, _PLAIN[f.name](where + f.name, given))
+                object.__setattr__(self, f.name, _PLAIN[f.name](where + f.name, given))
         _core.check_event(where, self._as_pair())
 
     def _as_pair(self) -> tuple[str, dict[str, Any]]:
@@ -260,21 +260,7 @@ def event_of(kind: str, values: Mapping[str, Any]) -> Event:
 
 def events_asked_for(events: Iterable[Event]) -> tuple[Event, ...]:
     """Return the events to look for; raise TypeError for anything else."""
-    if type(events) is tuple and not events:
-        return ()
-    remedy = "must be a list of pendcore.events"
-    if isinstance(events, Event):
-        raise TypeError(f"events = {events!r}: {remedy}: put it in brackets")
-    try:
-        events = tuple(events)
-    except TypeError:
-        raise TypeError(f"events = {events!r}: {remedy}") from None
-    for i, event in enumerate(events, start=1):
-        if not isinstance(event, Event):
-            raise TypeError(
-                f"event {i} = {event!r}: must be one of pendcore.events, as RateZero(1)"
-            )
-    return events
+    return tuple_of("event", Event, events, "pendcore.events")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -28,7 +28,6 @@ A case::
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
@@ -83,13 +82,6 @@ _ANYWHERE = KEYS | {
     "effect": tuple({key for keys in EFFECT_KEYS.values() for key in keys}),
     "event": tuple({key for keys in EVENT_KEYS.values() for key in keys}),
 }
-
-
-def case_from(source: str | os.PathLike[str]) -> Case:
-    """Read a case from a file, or from the text itself; see `pendcore.read_case`."""
-    if isinstance(source, str) and "\n" in source:
-        return case_from_text(source, "case")
-    return case_from_text(text_of(Path(source)), str(source))
 
 
 def with_line(path: Path, complaint: str) -> str:

@@ -35,7 +35,8 @@ class Described(Parametrized):
         """Make plain what was given, and check it; what is wrong is told after ``where``."""
         for parameter in self.description.parameters:
             given = getattr(self, parameter.name)
-            self._set(parameter.name, _plain(where + parameter.name, parameter, given))
+            plain = _plain(where + parameter.name, parameter, given)
+            object.__setattr__(self, parameter.name, plain)
         self._check(where)
 
     def _check(self, where: str) -> None:
@@ -107,7 +108,7 @@ class OwnEffect(Effect, OfFunction):
 
     def _settle(self, where: str) -> None:
         given = ((f, getattr(self, f.name)) for f in fields(self))
-        self._set("_origins", {f.name: x for f, x in given if x is not f.default})
+        object.__setattr__(self, "_origins", {f.name: x for f, x in given if x is not f.default})
         super()._settle(where)
 
     def particulars(self) -> dict[str, Any]:

@@ -66,9 +66,10 @@ class Link(Parametrized):
             inertia = mass * length * length / 12  # in this order, as in the core: the same bits
         else:
             inertia = number("inertia", inertia, "kg m^2")
-        values = {"mass": mass, "length": length, "center": center, "inertia": inertia}
-        for name, value in values.items():
-            self._set(name, value)
+        object.__setattr__(self, "mass", mass)
+        object.__setattr__(self, "length", length)
+        object.__setattr__(self, "center", center)
+        object.__setattr__(self, "inertia", inertia)
 
     @classmethod
     def point_mass(cls, *, mass: float, length: float) -> Link:

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import partial
-from typing import Any, NoReturn, Self
+from typing import Any, NoReturn, Self, TypeVar
+
+_AN_OBJECT = {
+    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
+    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
+    "event": "pendcore.events object, such as RateZero(joint=1)",
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -24,9 +31,6 @@ class Parametrized:
         return type(self)(**{**self.particulars(), **changes})
 
     __replace__ = replace  # copy.replace() of Python 3.13
-
-    def _set(self, name: str, value: object) -> None:
-        object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={x!r}" for name, x in self.particulars().items())
@@ -54,3 +58,26 @@ class OfFunction(Parametrized):
 
     def __reduce__(self) -> NoReturn:
         raise self.cannot_be("pickled")
+
+
+Member = TypeVar("Member", bound=Parametrized)
+
+
+def tuple_of(
+    noun: str, kind: type[Member], values: Iterable[Member], what: str
+) -> tuple[Member, ...]:
+    """Return the links, effects or events of a list; raise TypeError for anything else."""
+    remedy = f"must be a list of {what}"
+    try:
+        values = tuple(values)
+    except TypeError:
+        alone = ": put it in brackets" if isinstance(values, kind) else ""
+        raise TypeError(f"{noun}s = {values!r}: {remedy}{alone}") from None
+    for i, value in enumerate(values, start=1):
+        if isinstance(value, type) and issubclass(value, kind):
+            raise TypeError(
+                f"{noun} {i} = {value.__name__}: must be a {_AN_OBJECT[noun]}; got the class itself"
+            )
+        if not isinstance(value, kind):
+            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
+    return values

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -28,12 +28,12 @@ from pendcore._messages.html import beside, drawing, table
 from pendcore._messages.warning import warn
 from pendcore._scene.effect_class import Described, Effect
 from pendcore._scene.link import Link
+from pendcore._scene.parametrized import tuple_of
 
 if TYPE_CHECKING:
     from pendcore._explanation.explanation import Explanation
     from pendcore._explanation.not_modelled import Absence
 
-Member = TypeVar("Member")
 _PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
 """The name of a parameter, as the core lists them (cpp/include/pendcore/parameters.hpp)."""
 MOST_ROWS = 20
@@ -119,8 +119,8 @@ class Scene:
         self._warn()
 
     def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
-        links = _tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
-        effects = _tuple_of("effect", Effect, effects, "pendcore.effects")
+        links = tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
+        effects = tuple_of("effect", Effect, effects, "pendcore.effects")
         gravity = number("gravity", gravity, "m/s^2")
         acting = [effect._as_pair() for effect in effects]
         rows = [(link.mass, link.length, link.center, link.inertia) for link in links]
@@ -489,30 +489,6 @@ class Scene:
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         # The compiled scene is made anew; what is implausible was said when it was first made.
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
-
-
-_OBJECT = {
-    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
-    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
-}
-
-
-def _tuple_of(
-    noun: str, kind: type[Member], values: Iterable[Member], what: str
-) -> tuple[Member, ...]:
-    remedy = f"must be a list of {what}"
-    try:
-        values = tuple(values)
-    except TypeError:
-        raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
-    for i, value in enumerate(values, start=1):
-        if isinstance(value, type) and issubclass(value, kind):
-            raise TypeError(
-                f"{noun} {i} = {value.__name__}: must be a {_OBJECT[noun]}; got the class itself"
-            )
-        if not isinstance(value, kind):
-            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
-    return values
 
 
 def check_parameter_names(scene: _core.Scene, names: Collection[Any]) -> None:
