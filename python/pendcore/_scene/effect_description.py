@@ -119,12 +119,6 @@ class Description(NamedTuple):
         """The calls among the examples."""
         return tuple(x for x in self.examples.splitlines() if x.startswith(f"{self.name}("))
 
-    @property
-    def preparation(self) -> tuple[str, ...]:
-        """The lines before them."""
-        lines = self.examples.splitlines()
-        return tuple(lines[: len(lines) - len(self.calls)])
-
 
 CAVEATS = {
     "dry": "A joint that friction brings to rest sticks: its rate is 0.0, exactly, until the "
@@ -138,45 +132,37 @@ CAVEATS = {
 """Notes on the laws whose work the ledger books on an account, by that account."""
 
 
-def _of(name: str, parameter: str) -> Parameter:
-    """Return a parameter as the core describes it, of an effect by name."""
-    rows = (told["parameters"] for told in _core.effect_descriptors() if told["name"] == name)
-    return next(Parameter(**row) for row in next(rows) if row["name"] == parameter)
-
-
-USER = Description(
-    name="User",
-    kind="user",
-    sentence="An effect of the user's own, as a Python function of t, q and qd.",
-    law="Q += f(t, q, qd)",
-    source="the user's",
-    account="user",
-    is_function=True,
-    parameters=(
-        Parameter(
-            name="function",
-            symbol="f",
-            unit="N m",
-            sentence="f(t, q, qd) of the time (s), the angles (n,) and the rates (n,) returns the "
-            "generalised forces (n,) of the absolute angles; the same for the same arguments. It "
-            "is called at every right-hand side, a few microseconds each",
-            type="function",
-            range="",
-            required=True,
-            default=None,
-        ),
-        _of("CompiledUser", "breaks"),
-    ),
-    examples="User(function=lambda t, q, qd: -0.1 * qd)\n"
-    "User(function=lambda t, q, qd: [2.0 if t < 0.5 else -2.0, 0.0], breaks=[0.5])",
-    outcome="user: -1.305 J",
-)
-
-
 @cache
 def effects() -> tuple[Description, ...]:
     """Return the kinds of effects: the core's in the order of its registry, and the user's."""
-    return (*map(_description, _core.effect_descriptors()), USER)
+    core = tuple(map(_description, _core.effect_descriptors()))
+    return (*core, _in_python(next(one for one in core if one.is_function)))
+
+
+def _in_python(compiled: Description) -> Description:
+    """Return what a Python function is in place of a compiled one."""
+    function = Parameter(
+        name="function",
+        symbol="f",
+        unit="N m",
+        sentence="f(t, q, qd) of the time (s), the angles (n,) and the rates (n,) returns the "
+        "generalised forces (n,) of the absolute angles; the same for the same arguments. It "
+        "is called at every right-hand side, a few microseconds each",
+        type="function",
+        range="",
+        required=True,
+        default=None,
+    )
+    return compiled._replace(
+        name="User",
+        kind="user",
+        sentence="An effect of the user's own, as a Python function of t, q and qd.",
+        law="Q += f(t, q, qd)",
+        parameters=(function, *(p for p in compiled.parameters if p.name == "breaks")),
+        examples="User(function=lambda t, q, qd: -0.1 * qd)\n"
+        "User(function=lambda t, q, qd: [2.0 if t < 0.5 else -2.0, 0.0], breaks=[0.5])",
+        outcome="user: -1.305 J",
+    )
 
 
 @cache
@@ -241,7 +227,7 @@ def _effect_example(effect: Description) -> Iterator[str]:
     """Yield lines that run the textbook's scene with an effect, if it has an example."""
     if not effect.calls:
         return
-    for line in effect.preparation:
+    for line in effect.examples.splitlines()[: -len(effect.calls)]:
         yield f"... {line}" if line.startswith((" ", "def ")) else f">>> {line}"
     yield _assignment(effect.calls[0], [p.part for p in effect.parameters if p.part])
     if not effect.outcome:
