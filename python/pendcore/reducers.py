@@ -31,7 +31,7 @@ class Reducer:
         return {}
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True)
 class FirstEvent(Reducer):
     """The time at which an event first happens, s; NaN where it does not.
 
@@ -55,12 +55,11 @@ class FirstEvent(Reducer):
     usual_name: ClassVar[str] = "first_event"
     unit: ClassVar[str] = "s"
 
-    def __init__(self, event: Event) -> None:
-        if not isinstance(event, Event):
+    def __post_init__(self) -> None:
+        if not isinstance(self.event, Event):
             raise TypeError(
-                f"event = {event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
+                f"event = {self.event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
             )
-        object.__setattr__(self, "event", event)
 
 
 @dataclass(frozen=True, slots=True)

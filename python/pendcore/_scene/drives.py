@@ -23,8 +23,7 @@ def parts(scene: Scene) -> Iterator[tuple[Part, str]]:
 
 def changes_with_time(scene: Scene) -> bool:
     """Return whether an effect has a table, a spline or a sinusoid."""
-    names = {p.name for part, _ in parts(scene) for p in part.description.parameters}
-    return not names.isdisjoint({"t", "angular_frequency"})
+    return any(hasattr(part, "t") or hasattr(part, "angular_frequency") for part, _ in parts(scene))
 
 
 def outside_of_tables(scene: Scene, t: float) -> str:
