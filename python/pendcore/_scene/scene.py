@@ -25,7 +25,7 @@ from pendcore._messages.arguments import (
     vector,
 )
 from pendcore._messages.html import beside, drawing, table
-from pendcore._messages.warning import warn
+from pendcore._messages.warning import silence, warn
 from pendcore._scene.effect_class import Described, Effect
 from pendcore._scene.link import Link
 from pendcore._scene.parametrized import tuple_of
@@ -115,10 +115,6 @@ class Scene:
     def __init__(
         self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
     ) -> None:
-        self._compile(links, gravity, effects)
-        self._warn()
-
-    def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
         links = tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
         effects = tuple_of("effect", Effect, effects, "pendcore.effects")
         gravity = number("gravity", gravity, "m/s^2")
@@ -128,8 +124,6 @@ class Scene:
         object.__setattr__(self, "gravity", gravity)
         object.__setattr__(self, "effects", effects)
         object.__setattr__(self, "_compiled", _core.scene(rows, gravity, acting))
-
-    def _warn(self) -> None:
         for message in self._compiled.warnings:
             warn(message)
 
@@ -482,12 +476,11 @@ class Scene:
     def _unpickled(
         cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
     ) -> Self:
-        scene = object.__new__(cls)
-        scene._compile(links, gravity, effects)
-        return scene
+        with silence():  # what is implausible was said when it was first made
+            return cls(links=links, gravity=gravity, effects=effects)
 
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
-        # The compiled scene is made anew; what is implausible was said when it was first made.
+        # The compiled scene is made anew.
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
 
 
