@@ -362,14 +362,6 @@ class FoundEvents(list[Found]):
         return np.array([one.direction for one in self], dtype=np.int_)
 
 
-def found_events(count: int, links: int, found: Iterable[tuple[Any, ...]]) -> list[FoundEvents]:
-    """Return what the core found of each of so many events."""
-    lists = [FoundEvents(links) for _ in range(count)]
-    for event, t, direction, y, y_before in found:
-        lists[event].append(Found(t, y, direction, y_before))
-    return lists
-
-
 __all__ = [
     "Event",
     "Found",

@@ -131,18 +131,6 @@ def simulate(
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
-    error = _error_asked_for(error, options)
-    asked = {
-        name: options.get(name, option.default)
-        for name, option in OPTIONS.items()
-        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
-    }
-    from pendcore._accuracy.target_error import run_to_error
-
-    return run_to_error(start, error, asked)
-
-
-def _error_asked_for(error: float, options: dict[str, Any]) -> float:
     if not 0 < number("error", error, "") < 1:
         raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
     for name, value in options.items():
@@ -151,4 +139,11 @@ def _error_asked_for(error: float, options: dict[str, Any]) -> float:
             raise ValueError(
                 f"{name} = {value!r}: is chosen for the error: leave out {name} or error"
             )
-    return float(error)
+    asked = {
+        name: options.get(name, option.default)
+        for name, option in OPTIONS.items()
+        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
+    }
+    from pendcore._accuracy.target_error import run_to_error
+
+    return run_to_error(start, float(error), asked)

@@ -21,7 +21,7 @@ from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
 from pendcore._scene.scene import Scene
-from pendcore.events import Event, FoundEvents, event_of, found_events
+from pendcore.events import Event, Found, FoundEvents, event_of
 from pendcore.options import RUN_DEFAULTS, OnFailure
 
 if TYPE_CHECKING:
@@ -288,9 +288,10 @@ class Solution:
         ``sol(event.t)`` differs by the rounding of t. See `pendcore.events.FoundEvents`.
         """
         if self._events is None:
-            self._events = found_events(
-                len(self.events_asked_for()), len(self.scene.links), self._run.found
-            )
+            n, asked = len(self.scene.links), self._run.arguments["events"]
+            self._events = [FoundEvents(n) for _ in asked]
+            for event, t, direction, y, y_before in self._run.found:
+                self._events[event].append(Found(t, y, direction, y_before))
         return self._events
 
     def events_asked_for(self) -> list[Event]:
