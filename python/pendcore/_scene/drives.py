@@ -10,26 +10,31 @@ from pendcore._scene.scene import Scene
 
 def fastest_drive(scene: Scene) -> float:
     """Return the largest angular frequency of a sinusoid in any effect, rad/s."""
-    return max((abs(getattr(x, "angular_frequency", 0.0)) for x, _ in parts(scene)), default=0.0)
+    return max((abs(getattr(x, "angular_frequency", 0.0)) for x in parts(scene)), default=0.0)
 
 
-def parts(scene: Scene) -> Iterator[tuple[Part, str]]:
-    """Yield the parts of effects, tables, splines and sinusoids among them, and what they are."""
-    for i, effect in enumerate(scene.effects, start=1):
-        for name, value in effect.particulars().items():
+def parts(scene: Scene) -> Iterator[Part]:
+    """Yield the parts of effects: tables, splines and sinusoids among them."""
+    for effect in scene.effects:
+        for parameter in effect.description.parameters:
+            value = getattr(effect, parameter.name)
             if isinstance(value, Part):
-                yield value, f"the {name} of effect {i} ({effect.kind})"
+                yield value
 
 
 def changes_with_time(scene: Scene) -> bool:
     """Return whether an effect has a table, a spline or a sinusoid."""
-    return any(hasattr(part, "t") or hasattr(part, "angular_frequency") for part, _ in parts(scene))
+    names = {p.name for part in parts(scene) for p in part.description.parameters}
+    return not names.isdisjoint({"t", "angular_frequency"})
 
 
 def outside_of_tables(scene: Scene, t: float) -> str:
     """Name the table or spline that does not reach to a time, and its effect; empty if none."""
-    for part, what in parts(scene):
-        times = getattr(part, "t", None)
-        if times is not None and not times[0] <= t <= times[-1]:
-            return f"{what}, {times[0]:.6g} to {times[-1]:.6g} s"
+    for i, effect in enumerate(scene.effects, start=1):
+        for parameter in effect.description.parameters:
+            value = getattr(effect, parameter.name)
+            times = getattr(value, "t", None) if isinstance(value, Part) else None
+            if times is not None and not times[0] <= t <= times[-1]:
+                where = f"{times[0]:.6g} to {times[-1]:.6g} s"
+                return f"the {parameter.name} of effect {i} ({effect.kind}), {where}"
     return ""
