@@ -26,8 +26,8 @@ import pendcore as pc
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.target_error import search
 from pendcore._accuracy.trials import Strategy, TrialRun, Trials
-from pendcore._run.call import Choice, Start, atol_beside, run, start_of
-from pendcore._run.options import OPTIONS
+from pendcore._run.call import Choice, Start, run, start_of
+from pendcore.options import OPTIONS, atol_beside
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]

@@ -20,8 +20,9 @@ from typing import Any
 import pendcore as pc
 from pendcore._accuracy.strategies import FROM_DEFECT
 from pendcore._core import DefectCorrection, has_defect_correction
-from pendcore._run.call import Choice, Start, atol_beside, run
+from pendcore._run.call import Choice, Start, run
 from pendcore._run.work import correction_work, series_work
+from pendcore.options import atol_beside
 
 E = pc.effects
 WAVE = E.Sinusoid(0.5, angular_frequency=3.0)

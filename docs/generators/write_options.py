@@ -2,17 +2,18 @@
 
     python docs/generators/write_options.py
 
-It writes python/pendcore/_run/keywords.py, and the table of `[run]` in docs/how_to/case_files.md. A
-test compares them with what it would write.
+It writes the keywords in python/pendcore/options.py, and the table of `[run]` in
+docs/how_to/case_files.md. A test compares them with what it would write.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from math import inf
 from pathlib import Path
 
-from pendcore._run.options import OPTIONS, RunOption
+from pendcore.options import OPTIONS, RunOption
 
 ROOT = Path(__file__).parents[2]
 BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
@@ -22,33 +23,13 @@ HEAD = """\
 | `t_start` | s | `0.0` | start |
 | `t_end` | s | needed | end; before `t_start` the run goes backward |
 """
-KEYWORDS = '''"""The keywords of a run, for type checkers and editors.
-
-Written by docs/generators/write_options.py from the descriptors of the options.
-"""
-
-from __future__ import annotations
-
-from collections.abc import Iterable
-from typing import Literal, TypeAlias, TypedDict
-
-import numpy.typing as npt
-
-from pendcore._messages.progress import Progress
-from pendcore._run.events import Event
-
-OnFailure: TypeAlias = Literal["warn", "raise", "ignore"]
-
-
-class RunKeywords(TypedDict, total=False):
-    """What `pendcore.simulate` takes by name."""
-
-'''
+KEYWORDS = re.compile(r"(?<=from the descriptors.\n    \"\"\"\n\n)(?:    \w+: .*\n)+")
+"""The fields of the class of keywords."""
 
 
 def keywords() -> str:
-    """Return the module with the type of every option."""
-    return KEYWORDS + "".join(f"    {one.name}: {one.annotation}\n" for one in OPTIONS.values())
+    """Return the type of every option."""
+    return "".join(f"    {one.name}: {one.annotation}\n" for one in OPTIONS.values())
 
 
 def table() -> str:
@@ -77,10 +58,10 @@ def _toml(value: object) -> str:
 
 def written() -> dict[Path, str]:
     """Return every file and its text."""
-    page = ROOT / "docs/how_to/case_files.md"
+    page, module = ROOT / "docs/how_to/case_files.md", ROOT / "python/pendcore/options.py"
     before, rest = page.read_text().split(BEGIN)
     return {
-        ROOT / "python/pendcore/_run/keywords.py": keywords(),
+        module: KEYWORDS.sub(keywords(), module.read_text()),
         page: before + BEGIN + table() + END + rest.split(END)[1],
     }
 

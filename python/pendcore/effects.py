@@ -12,13 +12,14 @@ docstrings. docs/effects has a page on each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-from pendcore._messages.arguments import did_you_mean
-from pendcore._scene.effect_class import Described, Effect, OwnEffect, Part, PythonEffect, filled
+from pendcore._messages.arguments import did_you_mean, in_unit
+from pendcore._scene.effect_class import Described, Effect, OwnEffect, Part
+from pendcore._scene.effect_description import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     Numbers = Sequence[float] | npt.NDArray[np.float64]
+
+Made = TypeVar("Made", bound=Described)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -171,11 +174,14 @@ class CompiledUser(OwnEffect):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class User(PythonEffect):
+class User(OwnEffect):
     """An effect of the user's own, as a Python function of t, q and qd."""
 
     function: Callable[..., npt.ArrayLike]
     breaks: Numbers = ()
+
+    def _as_pair(self) -> tuple[str, Any]:
+        return self.kind, (self.function, self.breaks)
 
 
 PARTS: dict[str, type[Part]] = {cls.__name__: cls for cls in (Sinusoid, Table, PD, Spline)}
@@ -201,25 +207,32 @@ KINDS: dict[str, type[Effect]] = {
 """The classes of effects, by kind, in the order of the core's registry."""
 
 
-def made(cls: type[Described], values: Mapping[str, Any], where: str | None = None) -> Any:
+def made(cls: type[Made], values: Mapping[str, Any], where: str | None = None) -> Made:
     """Make one of a mapping; what is wrong is told after ``where``, or the name of the class.
 
     A part may be a mapping itself.
     """
     where = f"{cls.__name__}: " if where is None else where
-    whole = dict(values)
+    _check_names(where, cls.description.parameters, values)
+    new = object.__new__(cls)
     for parameter in cls.description.parameters:
-        value = values.get(parameter.name)
+        value: Any = values.get(parameter.name, parameter.default)
         if parameter.part and isinstance(value, Mapping):
-            inner = f"{where}{parameter.name}."
-            whole[parameter.name] = made(PARTS[parameter.part], value, inner)
-    return filled(cls, whole, where)
+            value = made(PARTS[parameter.part], value, f"{where}{parameter.name}.")
+        object.__setattr__(new, parameter.name, value)
+    new._settle(where)
+    return new
 
 
-def effect_of(kind: str, values: Mapping[str, Any], where: str | None = None) -> Effect:
-    """Make an effect of its kind and a mapping; see `made`."""
-    effect: Effect = made(KINDS[kind], values, where)
-    return effect
+def _check_names(where: str, parameters: Iterable[Parameter], given: Iterable[str]) -> None:
+    names = [parameter.name for parameter in parameters]
+    for name in given:
+        if name not in names:
+            owner = f"{where[:-1]} " if where.endswith(".") else where
+            raise TypeError(f"{owner}has no parameter {name!r}: {did_you_mean(name, names)}")
+    for p in parameters:
+        if p.required and p.name not in given:
+            raise TypeError(f"{where}{p.name} is missing: {p.sentence}{in_unit(p.unit)}")
 
 
 def kinds() -> dict[str, type[Effect]]:

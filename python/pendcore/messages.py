@@ -22,7 +22,7 @@ from pendcore._messages.arguments import (
     whole_number,
 )
 from pendcore._messages.handed_over import forget_inner_runs, hand_over
-from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.progress import Progress, callback, close, reporting
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
 
@@ -39,6 +39,7 @@ __all__ = [
     "number",
     "numbers",
     "positive",
+    "reporting",
     "require_scene",
     "silence",
     "text",

@@ -1,7 +1,138 @@
-"""What an ensemble keeps of each member: reducers for the ``keep`` of `pendcore.ensemble`."""
+"""What an ensemble keeps of each member beside its end: reducers for the ``keep`` of `ensemble`."""
 
 from __future__ import annotations
 
-from pendcore._ensemble.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
+from dataclasses import dataclass
+from typing import ClassVar
+
+from pendcore.events import Event
+
+
+class Reducer:
+    """What makes a number, or a few, of a whole run: one of the classes of `pendcore.reducers`.
+
+    The core computes them. For anything else, keep the states at times, or go through the runs of
+    `Ensemble.member`.
+
+    Examples
+    --------
+    >>> isinstance(pc.reducers.EnergyDrift(), pc.reducers.Reducer)
+    True
+    """
+
+    __slots__ = ()
+    usual_name: ClassVar[str]
+    """Its name, if it is given alone."""
+    unit: ClassVar[str]
+
+    @staticmethod
+    def labels(n: int) -> dict[str, list[str]]:
+        """Return its axes beyond those of the members, with the labels along each."""
+        return {}
+
+
+@dataclass(frozen=True, slots=True)
+class FirstEvent(Reducer):
+    """The time at which an event first happens, s; NaN where it does not.
+
+    Parameters
+    ----------
+    event : pendcore.events.Event
+        If it is ``terminal``, each member ends there, with status ``event``.
+
+    Examples
+    --------
+    >>> over = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True, terminal=True)
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [-1.2, -0.6]], t_span=(0, 5),
+    ...     keep=pc.reducers.FirstEvent(over),
+    ... )
+    >>> found["first_event"].round(3)
+    array([  nan, 1.343])
+    """
+
+    event: Event
+    usual_name: ClassVar[str] = "first_event"
+    unit: ClassVar[str] = "s"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.event, Event):
+            raise TypeError(
+                f"event = {self.event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Extremes(Reducer):
+    """The least and the greatest value of each angle, rad, and rate, rad/s, of a run: (2, 2n).
+
+    They are found between the steps, on the dense output. Row 0 is the least values, row 1 the
+    greatest; the columns are the angles of all links, then their rates.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [1.5, 1.5]], keep=pc.reducers.Extremes()
+    ... )
+    >>> np.ptp(found["extremes"], axis=1).round(2)[:, :2]  # rad, swings of both links
+    array([[2.  , 2.67],
+           [0.14, 0.21]])
+    """
+
+    usual_name: ClassVar[str] = "extremes"
+    unit: ClassVar[str] = "rad, rad/s"
+
+    @staticmethod
+    def labels(n: int) -> dict[str, list[str]]:
+        """Return the axes and their labels."""
+        links = range(1, n + 1)
+        components = [f"q_{i}" for i in links] + [f"qd_{i}" for i in links]
+        return {"extreme": ["least", "greatest"], "component": components}
+
+
+@dataclass(frozen=True, slots=True)
+class EnergyDrift(Reducer):
+    """The largest change of the total energy over the steps of a run, J.
+
+    Where effects do work, it is the largest residual of the ledger, which each member then keeps.
+    The energy tells of errors, but not how large they are: see `Ensemble.resolved`.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 5),
+    ...     keep=pc.reducers.EnergyDrift(),
+    ... )
+    >>> bool((found["energy_drift"] < 1e-6).all())
+    True
+    """
+
+    usual_name: ClassVar[str] = "energy_drift"
+    unit: ClassVar[str] = "J"
+
+
+@dataclass(frozen=True, slots=True)
+class LargestExponent(Reducer):
+    """The largest finite-time Lyapunov exponent of a run, 1/s; see `pendcore.lyapunov`.
+
+    It takes a run of its own, to the time that the member reached. Scenes with dry friction or
+    stops have none.
+
+    Examples
+    --------
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.0, 0.0], [1.5, 1.5]], t_span=(0, 15),
+    ...     keep=pc.reducers.LargestExponent(),
+    ... )
+    >>> found["largest_exponent"].round(2)
+    array([1.02, 0.11])
+    """
+
+    usual_name: ClassVar[str] = "largest_exponent"
+    unit: ClassVar[str] = "1/s"
+
+
+REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, LargestExponent)
+"""Those that the core computes."""
 
 __all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]

@@ -11,7 +11,8 @@ import pytest
 from pendcore import _core
 from pendcore._accuracy.defect_correction import FromDefect
 from pendcore._accuracy.strategies import FROM_DEFECT, strategies
-from pendcore._run.call import Choice, Start, atol_beside, run
+from pendcore._run.call import Choice, Start, run
+from pendcore.options import atol_beside
 
 CHAIN = pc.Scene(
     links=[pc.Link(mass=m, length=x) for m, x in ((1.0, 0.5), (2.0, 0.3), (0.5, 1.0))],

@@ -75,7 +75,11 @@ PYTHON_LAYERS = [
     "derive",
     "cli",
 ]
-LAYER_OF_PUBLIC_MODULE = {"effects": "_scene"}
+LAYER_OF_PUBLIC_MODULE = {
+    "effects": "_scene",
+    **dict.fromkeys(("events", "methods", "options"), "_run"),
+    **dict.fromkeys(("reducers", "sampling"), "_ensemble"),
+}
 """Where the package's own files are more than names of what stands elsewhere."""
 EXTRAS = PYTHON_LAYERS[PYTHON_LAYERS.index("pendcore") + 1 :]
 

@@ -98,8 +98,8 @@ BAD: dict[str, Any] = {
     ),
     "must be a list of pendcore.events: put it in brackets": lambda: run(KEPT[0]),
     "events = 3: must be a list of pendcore.events": lambda: run(3),
-    "event 1 = <class 'pendcore.events.LinkAngle'>: must": lambda: run([ev.LinkAngle]),
-    "event 1 = 1: must be one of pendcore.events": lambda: case_of(1),
+    "event 1 = LinkAngle: must be a pendcore.events object": lambda: run([ev.LinkAngle]),
+    "event 1 = 1: must be a list of pendcore.events": lambda: case_of(1),
 }
 
 

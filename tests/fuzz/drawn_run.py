@@ -10,7 +10,7 @@ import numpy as np
 import pendcore as pc
 from carried import carried
 from pendcore import _core
-from pendcore._run.options import RUN_DEFAULTS
+from pendcore.options import RUN_DEFAULTS
 
 from fuzz import drawn_events, drawn_scene
 from fuzz.choices import Choices, happens

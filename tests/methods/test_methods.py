@@ -8,7 +8,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import _core
-from pendcore._run.methods import known_methods, most_accurate
+from pendcore.methods import known_methods, most_accurate
 from reference.order_conditions import StageWeights, misses, order_of, trees
 from reference.quadratic_field import Quadratic
 from reference.trajectories import trajectory

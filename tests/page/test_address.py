@@ -17,7 +17,7 @@ from urllib.parse import quote
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._run.options import OPTIONS
+from pendcore.options import OPTIONS
 from pendcore.page import html
 
 NODE = shutil.which("node")

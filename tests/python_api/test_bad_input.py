@@ -11,7 +11,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore._run.options import OPTIONS
+from pendcore.options import OPTIONS
 
 nan, inf = float("nan"), float("inf")
 ROD = pc.Link(mass=1, length=1)

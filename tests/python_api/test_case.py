@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pendcore import effects as fx
 from pendcore._cases.case_file import EVENT_KEYS, KEYS
-from pendcore._run.options import RUN_DEFAULTS
+from pendcore.options import RUN_DEFAULTS
 
 LINK = "[[link]]\nmass = 1.0\nlength = 1.0\n"
 TEXTBOOK = f"""\

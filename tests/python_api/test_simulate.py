@@ -14,7 +14,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore._messages.progress import ProgressBar
-from pendcore._run.options import RUN_DEFAULTS
+from pendcore.options import RUN_DEFAULTS
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
 import write_options

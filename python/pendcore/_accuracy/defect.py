@@ -8,9 +8,9 @@ import numpy as np
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats
-from pendcore._messages.progress import Progress, callback, close
-from pendcore._run.methods import known_methods
+from pendcore._messages.progress import Progress, reporting
 from pendcore._scene.scene import Scene
+from pendcore.methods import known_methods
 
 STEPS_AT_ONCE = 2000
 """The number of steps between two reports of progress."""
@@ -91,20 +91,16 @@ def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
     bearing friction, air, a motor's ripple. They say nothing about how far a chaotic motion has
     moved away from the exact one.
     """
-    report = callback(progress, "looking for torques")
     n = len(scene.links)
     starts = run.step_starts
     torque = np.empty((len(starts), n))
     apart = np.empty(len(starts))
     angles = np.empty(0)
-    try:
+    with reporting(progress, "looking for torques") as report:
         for first in range(0, max(len(starts), 1), STEPS_AT_ONCE):
             some = slice(first, min(first + STEPS_AT_ONCE, len(starts)))
             torque[some], apart[some], angles = run.defect(some.start, some.stop, angles)
-            if report is not None:
-                report(some.stop / max(len(starts), 1))
-    finally:
-        close(report)
+            report(some.stop / max(len(starts), 1))
     mass, length = sum(link.mass for link in scene.links), sum(link.length for link in scene.links)
     method = known_methods()[run.last_method]
     is_series = method["dense_output_is_series"]  # whose order the tolerances choose

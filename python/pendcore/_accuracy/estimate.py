@@ -38,11 +38,11 @@ from pendcore._accuracy.position_error import (
 from pendcore._accuracy.rounding import moved
 from pendcore._messages.arguments import Floats, time_limit_of
 from pendcore._messages.handed_over import hand_over
-from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.progress import Progress, reporting
 from pendcore._run.call import Choice, Start, resumed, run, start_of, tightened
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.methods import TIGHTEST
 from pendcore._run.solution import Solution
+from pendcore.methods import TIGHTEST
 
 Report: TypeAlias = Callable[[float], object]
 
@@ -170,18 +170,17 @@ def error_estimate(
             "ask for earlier times, or for none"
         )
     until = monotonic() + time_limit_of(time_limit)
-    report = callback(progress, "estimating the error")
+    methods = second_methods(start_of(solution), solution.method, solution.stats.stiff)
     found: list[ErrorEstimate] = []
     try:
-        for method in second_methods(start_of(solution), solution.method, solution.stats.stiff):
-            found.append(_compared(solution, method, until, report))
-            if found[-1].is_complete or monotonic() > until:
-                break
+        with reporting(progress, "estimating the error") as report:
+            for method in methods:
+                found.append(_compared(solution, method, until, report))
+                if found[-1].is_complete or monotonic() > until:
+                    break
     except BaseException as stop:
         hand_over(stop, solution=solution)
         raise
-    finally:
-        close(report)
     return max(found, key=lambda error: len(error.t))  # some method supports every scene
 
 
@@ -207,9 +206,7 @@ def second_times(solution: Solution) -> Floats | None:
     return kept_times(solution) if len(solution.t) else np.array([solution._run.t_reached])
 
 
-def _compared(
-    solution: Solution, method: str, until: float, report: Report | None
-) -> ErrorEstimate:
+def _compared(solution: Solution, method: str, until: float, report: Report) -> ErrorEstimate:
     """Return the error of a solution, compared with second runs by a method."""
     asked, first = solution._run.arguments, _choice_of(solution)
     tight = float(np.min(first.rtol)) < THIRD_RUN_BELOW or asked["step"] is not None
@@ -273,9 +270,9 @@ def _legs(
             return
 
 
-def _part_of(report: Report | None, done: int, count: int) -> Report:
+def _part_of(report: Report, done: int, count: int) -> Report:
     """Return what reports the progress of one of several parts."""
-    return lambda fraction: None if report is None else report((done + fraction) / count)
+    return lambda fraction: report((done + fraction) / count)
 
 
 def _choice_of(solution: Solution) -> Choice:

@@ -79,7 +79,7 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
     finally:
         close(report)
     if isinstance(found, Refusal):
-        raise AccuracyError(*found)
+        raise hand_over(AccuracyError(found.message), solution=found.solution, least=found.least)
     return found
 
 

@@ -30,18 +30,19 @@ from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
 from pendcore._messages.warning import warn
 from pendcore._run.accuracy import DEFECT, Accuracy, Outcome, Paid
-from pendcore._run.call import Choice, Start, atol_beside, resumed, run, silent
+from pendcore._run.call import Choice, Start, resumed, run, silent
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.methods import (
+from pendcore._run.solution import Solution
+from pendcore._run.work import correction_work, series_work
+from pendcore._scene.effect_description import Description
+from pendcore.methods import (
     TIGHTEST,
     TIGHTEST_IMPLICIT,
     error_over_rtol,
     implicit_method,
     pair_of,
 )
-from pendcore._run.solution import Solution
-from pendcore._run.work import correction_work, series_work
-from pendcore._scene.effect_description import Description
+from pendcore.options import atol_beside
 
 _ADVANCE = 0.35
 """The share of what is left of the progress bar that a run fills."""

@@ -13,16 +13,15 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import members_of
-from pendcore._ensemble.reducers import REDUCERS, Reducer
 from pendcore._ensemble.request import Request
 from pendcore._ensemble.whole_run import run_ensemble
 from pendcore._messages.arguments import Floats, numbers, text, time_span
 from pendcore._messages.progress import Progress
 from pendcore._messages.warning import warn
-from pendcore._run.events import Event, events_asked_for
-from pendcore._run.keywords import OnFailure
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._scene.scene import Scene, require_scene
+from pendcore.events import Event, events_asked_for
+from pendcore.options import RUN_DEFAULTS, OnFailure
+from pendcore.reducers import REDUCERS, Reducer
 
 Keep = str | Reducer | Mapping[str, Reducer]
 _TAKEN = ("status", "t_reached", "q", "qd", "q0", "qd0", "link", "time", "extreme", "component")

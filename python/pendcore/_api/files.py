@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pendcore._cases import archive
 from pendcore._cases.case import Case
-from pendcore._cases.case_file import case_from
+from pendcore._cases.case_file import case_from_text, text_of
 from pendcore._ensemble.archive import is_ensemble
 from pendcore._ensemble.archive import load as load_ensemble
 from pendcore._ensemble.ensemble import Ensemble
@@ -85,7 +85,9 @@ def read_case(source: str | os.PathLike[str]) -> Case:
     >>> pc.read_case("textbook.toml") == pc.Case.textbook()
     True
     """
-    return case_from(source)
+    if isinstance(source, str) and "\n" in source:
+        return case_from_text(source, "case")
+    return case_from_text(text_of(Path(source)), str(source))
 
 
 def _from_store(path: Path) -> Ensemble:

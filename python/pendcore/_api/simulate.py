@@ -13,20 +13,19 @@ from pendcore._messages.arguments import no_time_span, number
 from pendcore._messages.progress import ProgressBar, callback, close
 from pendcore._messages.warning import warn
 from pendcore._run.call import Start, completed
-from pendcore._run.events import events_asked_for
-from pendcore._run.keywords import RunKeywords
-from pendcore._run.methods import described_methods
-from pendcore._run.options import (
+from pendcore._run.run_error import checked, require_on_failure
+from pendcore._run.solution import Solution
+from pendcore._scene.scene import Scene, require_scene
+from pendcore.events import events_asked_for
+from pendcore.options import (
     ERROR,
     ON_FAILURE,
     OPTIONS,
     RUN_DEFAULTS,
+    RunKeywords,
     require_options,
     with_options,
 )
-from pendcore._run.run_error import checked, require_on_failure
-from pendcore._run.solution import Solution
-from pendcore._scene.scene import Scene, require_scene
 
 
 @with_options()
@@ -131,22 +130,7 @@ def simulate(
     return checked(completed(solution, report), on_failure)
 
 
-simulate.__doc__ = described_methods(simulate.__doc__)
-
-
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
-    error = _error_asked_for(error, options)
-    asked = {
-        name: options.get(name, option.default)
-        for name, option in OPTIONS.items()
-        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
-    }
-    from pendcore._accuracy.target_error import run_to_error
-
-    return run_to_error(start, error, asked)
-
-
-def _error_asked_for(error: float, options: dict[str, Any]) -> float:
     if not 0 < number("error", error, "") < 1:
         raise ValueError(f"error = {error!r}: must be > 0 and < 1, a share of the total length")
     for name, value in options.items():
@@ -155,4 +139,11 @@ def _error_asked_for(error: float, options: dict[str, Any]) -> float:
             raise ValueError(
                 f"{name} = {value!r}: is chosen for the error: leave out {name} or error"
             )
-    return float(error)
+    asked = {
+        name: options.get(name, option.default)
+        for name, option in OPTIONS.items()
+        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
+    }
+    from pendcore._accuracy.target_error import run_to_error
+
+    return run_to_error(start, float(error), asked)

@@ -22,16 +22,16 @@ from pendcore._cases.case import Case
 from pendcore._cases.case_file import case_from_text
 from pendcore._cases.npz import Entries, entries_of
 from pendcore._cases.whole_file import whole_file
-from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import silence
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.events import Function
 from pendcore._run.solution import Solution
 from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
-from pendcore.effects import effect_of
+from pendcore.effects import KINDS, made
+from pendcore.events import Function
 
 _RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
@@ -58,18 +58,13 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
         if (error := solution.known_error) is not None:
             entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
-    report = callback(progress, f"writing {os.fspath(path)}")
-    try:
+    with reporting(progress, f"writing {os.fspath(path)}") as report:
         state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
         with whole_file(path) as name, name.open("wb") as file:
             _write(file, entries | state, report)
-    finally:
-        close(report)
 
 
-def _write(
-    file: BinaryIO, entries: dict[str, Any], report: Callable[[float], object] | None
-) -> None:
+def _write(file: BinaryIO, entries: dict[str, Any], report: Callable[[float], object]) -> None:
     """Write arrays as `numpy.savez` does, and report the share that is written."""
     arrays = {key: np.asanyarray(value) for key, value in entries.items()}
     told = _Told(report, sum(array.nbytes for array in arrays.values()))
@@ -84,7 +79,7 @@ class _Told:
 
     entry: IO[bytes]
 
-    def __init__(self, report: Callable[[float], object] | None, whole: int) -> None:
+    def __init__(self, report: Callable[[float], object], whole: int) -> None:
         self.report = report
         self.whole = whole
         self.written = 0
@@ -93,8 +88,7 @@ class _Told:
         """Write a piece, and report."""
         self.entry.write(piece)
         self.written += len(piece)
-        if self.report is not None:  # the heads of the arrays count as well
-            self.report(min(self.written / self.whole, 1.0))
+        self.report(min(self.written / self.whole, 1.0))  # the heads of the arrays count as well
 
 
 def load(path: str | os.PathLike[str]) -> Solution:
@@ -142,5 +136,5 @@ def _scene(state: dict[str, Any]) -> Scene:
     names = ("mass", "length", "center", "inertia")
     rows = state["links"].reshape(-1, 4).tolist()
     links = [Link(**dict(zip(names, row, strict=True))) for row in rows]
-    effects = [effect_of(kind, values) for kind, values in json.loads(state["effects"])]
+    effects = [made(KINDS[kind], values) for kind, values in json.loads(state["effects"])]
     return Scene._unpickled(links, state["gravity"], effects)

@@ -13,12 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore._messages.arguments import finite_array, text, vector
-from pendcore._run.events import Event, Function, events_asked_for
-from pendcore._run.keywords import OnFailure
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._run.solution import Solution
 from pendcore._scene.effect_class import Effect, OwnEffect, Part
 from pendcore._scene.scene import Scene
+from pendcore.events import Event, Function, events_asked_for
+from pendcore.options import RUN_DEFAULTS, OnFailure
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)

@@ -28,7 +28,6 @@ A case::
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
@@ -42,13 +41,13 @@ import numpy as np
 from pendcore._cases.case import Case
 from pendcore._cases.toml_text import Place, TomlText
 from pendcore._messages.arguments import vector
-from pendcore._run.events import KINDS as EVENT_KINDS
-from pendcore._run.events import Event, Function
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
-from pendcore.effects import KINDS, PARTS, effect_of
+from pendcore.effects import KINDS, PARTS, made
+from pendcore.events import KINDS as EVENT_KINDS
+from pendcore.events import Event, Function
+from pendcore.options import RUN_DEFAULTS
 
 KEYS = {
     "": ("name", "gravity", "link", "effect", "event", "start", "run", "map"),
@@ -83,13 +82,6 @@ _ANYWHERE = KEYS | {
     "effect": tuple({key for keys in EFFECT_KEYS.values() for key in keys}),
     "event": tuple({key for keys in EVENT_KEYS.values() for key in keys}),
 }
-
-
-def case_from(source: str | os.PathLike[str]) -> Case:
-    """Read a case from a file, or from the text itself; see `pendcore.read_case`."""
-    if isinstance(source, str) and "\n" in source:
-        return case_from_text(source, "case")
-    return case_from_text(text_of(Path(source)), str(source))
 
 
 def with_line(path: Path, complaint: str) -> str:
@@ -176,7 +168,7 @@ def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
             complaint = f"{where}{parameter.name} = {value!r}: must be a table with {keys}"
             raise text.error((*place, parameter.name), complaint)
     try:
-        return effect_of(kind, table, where)
+        return made(KINDS[kind], table, where)
     except (ValueError, TypeError) as error:
         raise text.error(_place(str(error)), str(error)) from None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,30 +10,20 @@ import numpy as np
 from pendcore import _core
 from pendcore._cases.case import Case
 from pendcore._cases.case_file import case_from_text
-from pendcore._ensemble import reducers
-from pendcore._ensemble.reducers import FirstEvent, Reducer
 from pendcore._ensemble.request import Request
 from pendcore._messages.arguments import Floats
 from pendcore._messages.warning import silence
-from pendcore._run.events import Event, Function
 from pendcore._scene.effect_class import OwnEffect
-from pendcore._scene.parameters import check_parameter_names
-from pendcore._scene.scene import Scene
+from pendcore._scene.scene import Scene, check_parameter_names
+from pendcore.events import Event, Function
+from pendcore.reducers import REDUCERS, FirstEvent, Reducer
 
 VERSION, CASE, KEEP, VARY = "pendcore", "case", "keep", "vary"
 SHAPE, BLOCK = "shape", "block_shape"
 """The names of what is told."""
 _OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
 """Those that every request has."""
-REDUCERS: dict[str, Callable[..., Reducer]] = {
-    kind.__name__: kind
-    for kind in (
-        reducers.FirstEvent,
-        reducers.Extremes,
-        reducers.EnergyDrift,
-        reducers.LargestExponent,
-    )
-}
+_KINDS: dict[str, Any] = {kind.__name__: kind for kind in REDUCERS}
 
 
 def about(scene: Scene, vary: list[str], request: Request) -> dict[str, Any]:
@@ -111,9 +101,9 @@ def _reducers(told: Mapping[str, Any], events: tuple[Event, ...]) -> dict[str, R
     for name, one in told[KEEP].items():
         kind = one[0] if isinstance(one, list) and one and isinstance(one[0], str) else None
         number = [next(numbers)] if kind == FirstEvent.__name__ else []
-        _require(told, KEEP, kind in REDUCERS and one == [kind, *number], "reducers and events")
+        _require(told, KEEP, kind in _KINDS and one == [kind, *number], "reducers and events")
         _require(told, KEEP, not any(k < 0 for k in number), "reducers of events of the case")
-        reducers[name] = REDUCERS[str(kind)](*(events[k] for k in number))
+        reducers[name] = _KINDS[str(kind)](*(events[k] for k in number))
     return reducers
 
 

@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._ensemble.ensemble import Ensemble
-from pendcore._ensemble.reducers import EnergyDrift, FirstEvent
 from pendcore._figures.axes import NewFigure, as_drawn, figure_of_pyplot
 from pendcore._messages.arguments import Floats
+from pendcore.reducers import EnergyDrift, FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""

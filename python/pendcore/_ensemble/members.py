@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore._messages.arguments import Floats, real_array
-from pendcore._scene.parameters import check_parameter_names
-from pendcore._scene.scene import Scene
+from pendcore._scene.scene import Scene, check_parameter_names
 
 Index = tuple[int, ...]
 

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._ensemble.members import Members
-from pendcore._ensemble.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 from pendcore._ensemble.request import Request
+from pendcore.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
 
 Arrays = Mapping[str, Any]
 """By the names of `Request.variables`, in memory or in a store."""

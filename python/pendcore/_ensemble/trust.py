@@ -20,12 +20,12 @@ from pendcore._accuracy.method_choice import second_methods
 from pendcore._accuracy.rounding import LAST_BITS, moved
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
-from pendcore._ensemble.reducers import EnergyDrift, FirstEvent, LargestExponent
 from pendcore._ensemble.request import Request
-from pendcore._ensemble.sampling import uniform
 from pendcore._messages.arguments import Floats
 from pendcore._run.call import Choice, Start, run, tightened
-from pendcore._run.methods import TIGHTEST
+from pendcore.methods import TIGHTEST
+from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent
+from pendcore.sampling import uniform
 
 ANGLE = 0.1
 """rad and rad/s: states that are farther apart are not the same."""

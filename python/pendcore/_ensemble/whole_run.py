@@ -16,7 +16,7 @@ from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
 from pendcore._messages.arguments import did_you_mean, time_limit_of, whole_number
 from pendcore._messages.handed_over import hand_over
-from pendcore._messages.progress import callback, close
+from pendcore._messages.progress import reporting
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.run_error import REMEDY, require_on_failure
 
@@ -48,9 +48,8 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
     what = f"running {members.count} members"
     if path is not None:
         what += f" into {path}, up to {in_words(bytes_of(members, request))}"
-    report = callback(given["progress"], what, members.count, "members")
-    limits = Limits(workers, limit, report)
-    try:
+    with reporting(given["progress"], what, members.count, "members") as report:
+        limits = Limits(workers, limit, report)
         if path is not None:
             with store_for(Path(path), members, request, chunk) as store:
                 found = run_blocks(members, request, store.blocks, store, limits, executor)
@@ -60,8 +59,6 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
             found = run_blocks(members, request, blocks, target, limits, executor)
         else:
             found = run_members(members, request, workers, limit, report)
-    finally:
-        close(report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
     if found.error is not None:
         hand_over(found.error, ensemble=result)
@@ -90,11 +87,7 @@ def _checked(found: Ensemble, on_failure: str) -> Ensemble:
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
     if on_failure == "raise":
-        try:
-            raise RuntimeError(complaint)
-        except RuntimeError as error:
-            hand_over(error, ensemble=found)
-            raise
+        raise hand_over(RuntimeError(complaint), ensemble=found)
     try:
         warn(f"{complaint}; {REMEDY}")
     except PendcoreWarning as warning:

@@ -13,12 +13,12 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._accuracy.position_error import time_grid
 from pendcore._messages.arguments import Floats, number, time_span
-from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.handed_over import raise_with
+from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import warn
-from pendcore._run.options import RUN_DEFAULTS
-from pendcore._run.solution import Solution
-from pendcore._run.statistics import Statistics
+from pendcore._run.solution import Solution, Statistics
 from pendcore._scene.scene import Scene, require_scene
+from pendcore.options import RUN_DEFAULTS
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -225,18 +225,13 @@ def lyapunov(
             "counts from its end to that of t_span"
         )
     times = time_grid(since, t_end, TIMES) if t_eval is None else t_eval
-    report = callback(progress, "following neighbours")
-    try:
+    with reporting(progress, "following neighbours") as report:
         found = _core.lyapunov(
             scene._compiled, q0, qd0, t_start, t_end, count, rtol, atol, since, times,
             max_step, max_steps, time_limit, report, warn,
         )  # fmt: skip
-    finally:
-        close(report)
     result = _exponents(found, since, len(scene.links))
-    if found["error"] is not None:
-        found["error"].exponents = result
-        raise found.pop("error")  # a frame that held it would make it wait for the collector
+    raise_with(found.pop("error"), exponents=result)
     if not result.success:
         warn(f"the exponents are not those of the whole span: {result.message}")
     return result

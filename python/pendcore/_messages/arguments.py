@@ -88,6 +88,13 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
+def function(name: str, value: object) -> object:
+    """Return a function of the user's."""
+    if not callable(value):
+        raise TypeError(f"{name} = {value!r}: must be a function of t, q, qd")
+    return value
+
+
 def time_span(t_span: Any) -> tuple[float, float]:
     """Return the start and the end of a run, finite, as two floats."""
     try:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 Progress: TypeAlias = bool | Callable[[float], object] | None
 """None: a bar after a second, on a terminal. True: a bar at once. A callable gets the fraction."""
 
+PATIENCE = 1.0
+"""How long a run takes before a bar is drawn that nobody asked for, s."""
+
 
 class ProgressBar:
     """A bar on standard error, drawn once a run on a terminal has taken a while.
@@ -21,8 +25,8 @@ class ProgressBar:
     It costs a run nothing before its first call, which the core makes after 50 ms.
     """
 
-    patience = 1.0
-    """s."""
+    at_once = False
+    """Whether it was asked for: it is then drawn at once, wherever standard error goes."""
     what = "simulating"
     """What the bar says is done."""
     count, unit = 100, "%"
@@ -31,32 +35,18 @@ class ProgressBar:
     bar: tqdm[Any] | None = None
 
     def __call__(self, fraction: float) -> None:
-        if self._since is None:
-            self._since = monotonic() if self.wanted() else inf
-        if monotonic() - self._since < self.patience:
+        if self._since is None:  # only people look at bars
+            self._since = monotonic() if self.at_once or sys.stderr.isatty() else inf
+        if not self.at_once and monotonic() - self._since < PATIENCE:
             return
         if self.bar is None:
             self.bar = _new_bar(self.what, self.count, self.unit)
         self.bar.update(self.count * fraction - self.bar.n)
 
-    def wanted(self) -> bool:
-        """Only people look at bars."""
-        return sys.stderr.isatty()
-
     def close(self) -> None:
         """End the line of the bar, if there is one."""
         if self.bar is not None:
             self.bar.close()
-
-
-class ImmediateBar(ProgressBar):
-    """A bar that is there at once, wherever standard error goes."""
-
-    patience = 0.0
-
-    def wanted(self) -> bool:
-        """It was asked for."""
-        return True
 
 
 def _new_bar(what: str, count: int, unit: str) -> tqdm[Any]:
@@ -73,9 +63,9 @@ def callback(
 ) -> Callable[[float], object] | None:
     """Return what the core is to call, or None; a bar says what is done, and how fast."""
     if progress is None or progress is True:
-        bar = ProgressBar() if progress is None else ImmediateBar()
-        if what != bar.what:
-            bar.what, bar.count, bar.unit = what, count, unit
+        bar = ProgressBar()
+        bar.at_once = bool(progress)
+        bar.what, bar.count, bar.unit = what, count, unit
         return bar
     if progress is False:
         return None
@@ -90,3 +80,15 @@ def close(report: Callable[[float], object] | None) -> None:
     """End the bar, where what was called is one of ours."""
     if isinstance(report, ProgressBar):
         report.close()
+
+
+@contextmanager
+def reporting(
+    progress: Progress, what: str, count: int = 100, unit: str = "%"
+) -> Iterator[Callable[[float], object]]:
+    """Yield what takes the fraction done, and end its bar; see `callback`."""
+    report = callback(progress, what, count, unit)
+    try:
+        yield report or (lambda fraction: None)
+    finally:
+        close(report)

@@ -185,10 +185,5 @@ class AccuracyError(ArithmeticError):
     True True
     """
 
-    def __init__(self, message: str, solution: Any = None, least: float = inf) -> None:
-        super().__init__(message)
-        self.solution = solution
-        self.least = least
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return type(self), (str(self), self.solution, self.least)
+    solution: Any
+    least: float

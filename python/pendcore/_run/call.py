@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.handed_over import hand_over
+from pendcore._messages.handed_over import raise_with
 from pendcore._messages.progress import Progress, callback, close
-from pendcore._run.methods import known_methods
-from pendcore._run.options import RUN_DEFAULTS
 from pendcore._run.solution import Solution
 from pendcore._scene.scene import Scene
+from pendcore.methods import known_methods
+from pendcore.options import RUN_DEFAULTS
 
 
 def silent(message: str) -> None:
@@ -47,11 +47,6 @@ class Choice(NamedTuple):
     rtol: npt.ArrayLike
     atol: npt.ArrayLike
     compensated: bool = False
-
-
-def atol_beside(rtol: float) -> float:
-    """Return the absolute tolerance, rad and rad/s, of runs of which rtol alone is chosen."""
-    return float(f"{rtol / 1000:g}")
 
 
 def run(
@@ -96,13 +91,7 @@ def resumed(
 def completed(result: Solution, report: Callable[[float], object] | None) -> Solution:
     """End the bar of a run; if an exception broke it off, raise that with the run so far."""
     close(report)
-    error = result._run.take_error()
-    if error is not None:
-        hand_over(error, solution=result)
-        try:
-            raise error
-        finally:
-            del error  # its traceback holds this frame: it would wait for the collector
+    raise_with(result._run.take_error(), solution=result)
     return result
 
 

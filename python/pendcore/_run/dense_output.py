@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.handed_over import forget_inner_runs
-from pendcore._messages.progress import callback
-from pendcore._run.call import completed, resumed, silent
+from pendcore._run.call import Choice, Start, resumed, run
 from pendcore._run.solution import Solution
 
 MOST_BYTES = 2**31
 """The largest dense output that is made for a run that was asked to keep less."""
-_START = ("q0", "qd0", "t_start", "t_end")
 
 
 def with_dense_output(solution: Solution) -> Solution:
-    """Return a run that has a state at any time, and the times that the given one kept.
-
-    Raises
-    ------
-    ValueError
-        In the words of ``sol(t)``, if the run cannot be had again: a function of the user's gives
-        other values now, another version wrote the file, or the dense output would be too large.
-    """
+    """See `Solution.with_dense_output`; what it raises has the words of ``sol(t)``."""
     if solution.store == "dense":
         return solution
     size = _bytes_of(solution)
@@ -53,19 +43,19 @@ def _simulated_anew(solution: Solution) -> Solution:
     asked = solution._run.arguments
     if solution._run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
         asked |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
-    q0, qd0, t_start, t_end = (asked.pop(name) for name in _START)
+    start = Start(solution.scene, *(asked.pop(name) for name in Start._fields[1:]))
     whole = _attempts(solution)
     # A run that came to its end goes beyond its last attempt where everything rests. A run that
     # was broken off had begun another attempt, which is not repeated.
     most = whole + 1 if solution.success else max(whole, 1)
     options = asked | {"store": "dense", "max_steps": most, "time_limit": None}
-    scene, report = solution.scene, callback(None)
-    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, silent)
-    again = completed(Solution(scene, run, solution.name), report)
+    choice = Choice(*(options.pop(name) for name in Choice._fields))
+    again = run(start, choice, progress=None, **options)
+    again.name = solution.name
     # A run that was resumed has passed events that end a run.
     while again.status == "event" and again._run.t_reached != solution._run.t_reached:
         most = max(whole + solution.success - _attempts(again), 1)
-        again = resumed(again, t_end, max_steps=most, progress=None)
+        again = resumed(again, start.t_end, max_steps=most)
     return again
 
 

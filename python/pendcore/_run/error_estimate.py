@@ -90,9 +90,6 @@ class ErrorEstimate:
         return float(self.t[within - 1]) if within else self.begin
 
     def __repr__(self) -> str:
-        return str(self)
-
-    def __str__(self) -> str:
         until = self.t[-1] if len(self.t) else self.begin
         where = "everywhere" if self.is_dense else f"at {len(self.t)} time{'s'[: len(self.t) != 1]}"
         ends = ""

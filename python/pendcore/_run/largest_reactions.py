@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats
-from pendcore._messages.progress import Progress, callback, close
+from pendcore._messages.progress import Progress, reporting
 from pendcore._scene.drives import fastest_drive
 from pendcore._scene.scene import Scene
 
@@ -83,15 +83,11 @@ def largest_reactions(
     if run.store != "dense":
         search.take(run.t, search.sizes_at(run.t, run.states))
         return search.found(is_over_time=len(set(run.t)) > 1)
-    report = callback(progress, "looking for the largest reactions")
     starts, end = run.step_starts, run.t_reached
-    try:
+    with reporting(progress, "looking for the largest reactions") as report:
         for low, high in search.pieces():
             search.look(low, high)
-            if report is not None:
-                report(abs(high[-1] - starts[0]) / abs(end - starts[0]))
-    finally:
-        close(report)
+            report(abs(high[-1] - starts[0]) / abs(end - starts[0]))
     search.take(np.array([end]), search.sizes(np.array([end])))
     return search.found()
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pendcore._messages.handed_over import hand_over
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.solution import Solution
@@ -28,12 +26,7 @@ class RunError(RuntimeError):
     max_steps 11
     """
 
-    def __init__(self, message: str, solution: Any) -> None:
-        super().__init__(message)
-        self.solution = solution
-
-    def __reduce__(self) -> tuple[object, ...]:
-        return type(self), (str(self), self.solution)
+    solution: Solution
 
 
 def require_on_failure(on_failure: object) -> None:
@@ -47,7 +40,7 @@ def checked(solution: Solution, on_failure: str) -> Solution:
     if on_failure == "ignore" or (solution.success and not solution.why_unverified):
         return solution
     if on_failure == "raise":
-        raise RunError(_complaint(solution), solution)
+        raise hand_over(RunError(_complaint(solution)), solution=solution)
     try:
         warn(f"{_complaint(solution)}; {REMEDY}")
     except PendcoreWarning as error:  # where warnings are errors the run is not lost either

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,13 +19,10 @@ from pendcore._messages.progress import Progress
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.events import Event, event_of
-from pendcore._run.found_events import FoundEvents, found_events
-from pendcore._run.keywords import OnFailure
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
-from pendcore._run.options import RUN_DEFAULTS
-from pendcore._run.statistics import Statistics
 from pendcore._scene.scene import Scene
+from pendcore.events import Event, Found, FoundEvents, event_of
+from pendcore.options import RUN_DEFAULTS, OnFailure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,6 +38,53 @@ if TYPE_CHECKING:
     from pendcore.page.notebook import NotebookPage
 
 
+class Statistics(NamedTuple):
+    """What a run took.
+
+    Attributes
+    ----------
+    nfev : int
+        Right-hand sides; for ``taylor`` series, each of which takes as long as many of them.
+    njev : int
+        Jacobians.
+    nlu : int
+        Factorisations.
+    accepted : int
+        Steps that were kept.
+    rejected : int
+        Steps that were tried again, shorter.
+    limited_by_tolerance : int
+        Accepted steps of the size that accuracy allowed.
+    limited_by_max_step : int
+        Accepted steps of the size of ``max_step``, or of a fixed step.
+    limited_by_break : int
+        Accepted steps that ended early, at the end of the run or where a law changes.
+    min_step, max_step : float
+        Sizes of the accepted steps, s, except those that ended early.
+    stiff : bool
+        Whether stability rather than accuracy limited the steps.
+
+    Examples
+    --------
+    >>> scene = pc.Scene.textbook()
+    >>> stats = pc.simulate(scene, (0, 1), 0.5, method="rk4", step=0.01).stats
+    >>> stats.accepted, stats.nfev
+    (100, 401)
+    """
+
+    nfev: int
+    njev: int
+    nlu: int
+    accepted: int
+    rejected: int
+    limited_by_tolerance: int
+    limited_by_max_step: int
+    limited_by_break: int
+    min_step: float
+    max_step: float
+    stiff: bool
+
+
 class Solution:
     """The result of `simulate`.
 
@@ -50,8 +94,6 @@ class Solution:
     ----------
     scene : Scene
         What moved.
-    name : str
-        A name for people: that of the case, if there was one. It may be set.
     accuracy : Accuracy or None
         What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
         and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
@@ -83,7 +125,7 @@ class Solution:
 
     @property
     def name(self) -> str:
-        """A name for people; it may be set to any text that a file can hold."""
+        """A name for people, at first the case's; any text that a file can hold may be set."""
         return self._name
 
     @name.setter
@@ -246,9 +288,10 @@ class Solution:
         ``sol(event.t)`` differs by the rounding of t. See `pendcore.events.FoundEvents`.
         """
         if self._events is None:
-            self._events = found_events(
-                len(self.events_asked_for()), len(self.scene.links), self._run.found
-            )
+            n, asked = len(self.scene.links), self._run.arguments["events"]
+            self._events = [FoundEvents(n) for _ in asked]
+            for event, t, direction, y, y_before in self._run.found:
+                self._events[event].append(Found(t, y, direction, y_before))
         return self._events
 
     def events_asked_for(self) -> list[Event]:
@@ -617,15 +660,14 @@ class Solution:
 
         return to_xarray(self)
 
-    def __reduce__(self) -> tuple[object, ...]:
+    def __reduce__(self) -> tuple[type[Solution], tuple[Any, ...]]:
         # The scene comes first: if it cannot be pickled, its message says so best.
         verified = None if self.accuracy is None else self.known_error
         return type(self), (self.scene, self._run, self.name, self.accuracy, verified)
 
     def __deepcopy__(self, memo: object) -> Solution:
-        # None of these objects ever changes, so the copy shares them.
-        verified = None if self.accuracy is None else self.known_error
-        return Solution(self.scene, self._run, self.name, self.accuracy, verified)
+        make, parts = self.__reduce__()
+        return make(*parts)  # none of these ever changes, so the copy shares them
 
     def __repr__(self) -> str:
         from pendcore._views.table import text

@@ -65,25 +65,13 @@ def angles_to_vertical(q: npt.ArrayLike, *, zero: Zero = "hanging") -> Any:
     q : array_like, any shape
         Absolute angles, from +x towards +y (down), rad.
     zero : {"hanging", "upright"}
-        Where a link points at ``theta = 0``: down or up.
+        As in `angles_from_vertical`, whose notes and errors hold here, too.
 
     Returns
     -------
     ndarray or float
         ``theta = pi/2 - q``, from upright ``theta = -pi/2 - q``, counter-clockwise; the same shape,
         rad. Whole turns stay: from upright, a link that hangs at ``q = pi/2`` is at ``-pi``.
-
-    Raises
-    ------
-    ValueError
-        If ``q`` is not finite, or ``zero`` another word.
-    TypeError
-        If ``q`` does not hold real numbers.
-
-    Notes
-    -----
-    For absolute angles alone. Rates have no pi/2 in them: ``thetad = -qd``, so negate them, and
-    never pass them through here.
 
     Examples
     --------

@@ -6,9 +6,10 @@ and the pages in docs/effects.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
-from textwrap import wrap
+from textwrap import fill
 from typing import Any, NamedTuple
 
 from pendcore import _core
@@ -118,12 +119,6 @@ class Description(NamedTuple):
         """The calls among the examples."""
         return tuple(x for x in self.examples.splitlines() if x.startswith(f"{self.name}("))
 
-    @property
-    def preparation(self) -> tuple[str, ...]:
-        """The lines before them."""
-        lines = self.examples.splitlines()
-        return tuple(lines[: len(lines) - len(self.calls)])
-
 
 CAVEATS = {
     "dry": "A joint that friction brings to rest sticks: its rate is 0.0, exactly, until the "
@@ -137,45 +132,37 @@ CAVEATS = {
 """Notes on the laws whose work the ledger books on an account, by that account."""
 
 
-def _of(name: str, parameter: str) -> Parameter:
-    """Return a parameter as the core describes it, of an effect by name."""
-    rows = (told["parameters"] for told in _core.effect_descriptors() if told["name"] == name)
-    return next(Parameter(**row) for row in next(rows) if row["name"] == parameter)
-
-
-USER = Description(
-    name="User",
-    kind="user",
-    sentence="An effect of the user's own, as a Python function of t, q and qd.",
-    law="Q += f(t, q, qd)",
-    source="the user's",
-    account="user",
-    is_function=True,
-    parameters=(
-        Parameter(
-            name="function",
-            symbol="f",
-            unit="N m",
-            sentence="f(t, q, qd) of the time (s), the angles (n,) and the rates (n,) returns the "
-            "generalised forces (n,) of the absolute angles; the same for the same arguments. It "
-            "is called at every right-hand side, a few microseconds each",
-            type="function",
-            range="",
-            required=True,
-            default=None,
-        ),
-        _of("CompiledUser", "breaks"),
-    ),
-    examples="User(function=lambda t, q, qd: -0.1 * qd)\n"
-    "User(function=lambda t, q, qd: [2.0 if t < 0.5 else -2.0, 0.0], breaks=[0.5])",
-    outcome="user: -1.305 J",
-)
-
-
 @cache
 def effects() -> tuple[Description, ...]:
     """Return the kinds of effects: the core's in the order of its registry, and the user's."""
-    return (*map(_description, _core.effect_descriptors()), USER)
+    core = tuple(map(_description, _core.effect_descriptors()))
+    return (*core, _in_python(next(one for one in core if one.is_function)))
+
+
+def _in_python(compiled: Description) -> Description:
+    """Return what a Python function is in place of a compiled one."""
+    function = Parameter(
+        name="function",
+        symbol="f",
+        unit="N m",
+        sentence="f(t, q, qd) of the time (s), the angles (n,) and the rates (n,) returns the "
+        "generalised forces (n,) of the absolute angles; the same for the same arguments. It "
+        "is called at every right-hand side, a few microseconds each",
+        type="function",
+        range="",
+        required=True,
+        default=None,
+    )
+    return compiled._replace(
+        name="User",
+        kind="user",
+        sentence="An effect of the user's own, as a Python function of t, q and qd.",
+        law="Q += f(t, q, qd)",
+        parameters=(function, *(p for p in compiled.parameters if p.name == "breaks")),
+        examples="User(function=lambda t, q, qd: -0.1 * qd)\n"
+        "User(function=lambda t, q, qd: [2.0 if t < 0.5 else -2.0, 0.0], breaks=[0.5])",
+        outcome="user: -1.305 J",
+    )
 
 
 @cache
@@ -209,38 +196,38 @@ def type_in_words(parameter: Parameter) -> str:
 
 def docstring(described: Description) -> str:
     """Return the docstring of a class."""
-    return "\n".join(_lines(described))
+    return "\n\n".join(_sections(described))
 
 
-def _lines(described: Description) -> Iterator[str]:
+def _sections(described: Description) -> Iterator[str]:
     yield described.sentence
     if described.law:
-        yield ""
-        yield "Law::"
-        yield ""
-        yield from wrap(described.law, 92, initial_indent="    ", subsequent_indent="        ")
-    yield from ("", "Parameters", "----------")
-    for parameter in described.parameters:
-        yield f"{parameter.name} : {type_in_words(parameter)}"
-        yield from wrap(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
-    yield from ("", "Raises", "------", "ValueError, TypeError")
-    yield "    If a value is not allowed; the message gives the value, its range and its unit."
+        inner = fill(described.law, 92, initial_indent="    ", subsequent_indent="        ")
+        yield f"Law::\n\n{inner}"
+    parameters = (
+        f"{parameter.name} : {type_in_words(parameter)}\n"
+        + fill(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
+        for parameter in described.parameters
+    )
+    yield "\n".join(["Parameters\n----------", *parameters])
+    yield (
+        "Raises\n------\nValueError, TypeError\n"
+        "    If a value is not allowed; the message gives the value, its range and its unit."
+    )
     if described.source:
-        yield from ("", "Notes", "-----")
-        yield from wrap(f"Source: {described.source}.", 92)
+        yield "Notes\n-----\n" + fill(f"Source: {described.source}.", 92)
     if described.account in CAVEATS:
-        yield ""
-        yield from wrap(CAVEATS[described.account], 92)
-    example = [*(_effect_example(described) if described.kind else _part_example(described.name))]
-    if example:
-        yield from ("", "Examples", "--------", *example)
+        yield fill(CAVEATS[described.account], 92)
+    example = _effect_example(described) if described.kind else _part_example(described.name)
+    if lines := "\n".join(example):
+        yield f"Examples\n--------\n{lines}"
 
 
 def _effect_example(effect: Description) -> Iterator[str]:
     """Yield lines that run the textbook's scene with an effect, if it has an example."""
     if not effect.calls:
         return
-    for line in effect.preparation:
+    for line in effect.examples.splitlines()[: -len(effect.calls)]:
         yield f"... {line}" if line.startswith((" ", "def ")) else f">>> {line}"
     yield _assignment(effect.calls[0], [p.part for p in effect.parameters if p.part])
     if not effect.outcome:
@@ -258,15 +245,11 @@ def _effect_example(effect: Description) -> Iterator[str]:
 
 def _part_example(name: str) -> Iterator[str]:
     """Yield lines that make an effect with a part, and show the part, if there is an example."""
-    made = f"={name}("
-    for call in (call for effect in effects() for call in effect.calls if made in call):
-        before, _, after = call.partition(made)
-        ends = (k for k, sign in enumerate(after, 1) if sign == ")")
-        end = next(k for k in ends if after[:k].count(")") > after[:k].count("("))
-        yield _assignment(call, [name])
-        yield f">>> effect.{before.replace('(', ' ').split()[-1]}"
-        yield f"{name}({after[:end]}"
-        return
+    as_argument = re.compile(rf"(\w+)=({name}\((?:[^()]|\([^()]*\))*\))")
+    for call in (call for effect in effects() for call in effect.calls):
+        if found := as_argument.search(call):
+            yield from (_assignment(call, [name]), f">>> effect.{found[1]}", found[2])
+            return
 
 
 def _assignment(call: str, parts: Iterable[str] = ()) -> str:

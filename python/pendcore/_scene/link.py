@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pendcore._messages.arguments import number
+from pendcore._scene.parametrized import Parametrized
 
 
 @dataclass(frozen=True, slots=True, init=False, repr=False)
-class Link:
+class Link(Parametrized):
     """One rigid link of the chain; a uniform rod unless said otherwise.
 
     Parameters
@@ -125,6 +126,3 @@ class Link:
         if self.inertia != rod.inertia:
             values["inertia"] = self.inertia
         return values
-
-    def __repr__(self) -> str:
-        return f"Link({', '.join(f'{name}={x!r}' for name, x in self.particulars().items())})"

@@ -7,9 +7,10 @@ i is where link i begins.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -24,16 +25,17 @@ from pendcore._messages.arguments import (
     vector,
 )
 from pendcore._messages.html import beside, drawing, table
-from pendcore._messages.warning import warn
-from pendcore._scene.effect_class import Effect
+from pendcore._messages.warning import silence, warn
+from pendcore._scene.effect_class import Described, Effect
 from pendcore._scene.link import Link
-from pendcore._scene.parameters import changed
+from pendcore._scene.parametrized import tuple_of
 
 if TYPE_CHECKING:
     from pendcore._explanation.explanation import Explanation
     from pendcore._explanation.not_modelled import Absence
 
-Member = TypeVar("Member")
+_PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
+"""The name of a parameter, as the core lists them (cpp/include/pendcore/parameters.hpp)."""
 MOST_ROWS = 20
 """The most links in the table of a notebook."""
 
@@ -113,12 +115,8 @@ class Scene:
     def __init__(
         self, *, links: Iterable[Link], gravity: float = 9.807, effects: Iterable[Effect] = ()
     ) -> None:
-        self._compile(links, gravity, effects)
-        self._warn()
-
-    def _compile(self, links: Iterable[Link], gravity: float, effects: Iterable[Effect]) -> None:
-        links = _tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
-        effects = _tuple_of("effect", Effect, effects, "pendcore.effects")
+        links = tuple_of("link", Link, links, "pendcore.Link, from the pivot outwards")
+        effects = tuple_of("effect", Effect, effects, "pendcore.effects")
         gravity = number("gravity", gravity, "m/s^2")
         acting = [effect._as_pair() for effect in effects]
         rows = [(link.mass, link.length, link.center, link.inertia) for link in links]
@@ -126,8 +124,6 @@ class Scene:
         object.__setattr__(self, "gravity", gravity)
         object.__setattr__(self, "effects", effects)
         object.__setattr__(self, "_compiled", _core.scene(rows, gravity, acting))
-
-    def _warn(self) -> None:
         for message in self._compiled.warnings:
             warn(message)
 
@@ -205,9 +201,20 @@ class Scene:
         >>> longer.links[1], longer.gravity
         (Link(mass=1.0, length=1.5), 1.62)
         """
-        links, gravity, effects = changed(
-            self._compiled, self.links, self.gravity, self.effects, values
-        )
+        check_parameter_names(self._compiled, values)
+        links, gravity, effects = list(self.links), self.gravity, list(self.effects)
+        of_links: dict[int, dict[str, float]] = {}
+        for name, value in values.items():
+            given = number(name, value, "")
+            if (place := _PLACE.fullmatch(name)) is None:
+                gravity = given
+            elif place[1] == "link":
+                of_links.setdefault(int(place[2]) - 1, {})[place[3]] = given
+            else:
+                i = int(place[2]) - 1
+                effects[i] = _with(effects[i], place[3].split("."), given)
+        for i, fields in of_links.items():
+            links[i] = links[i].replace(**fields)
         return type(self)(links=links, gravity=gravity, effects=effects)
 
     def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
@@ -469,37 +476,33 @@ class Scene:
     def _unpickled(
         cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
     ) -> Self:
-        scene = object.__new__(cls)
-        scene._compile(links, gravity, effects)
-        return scene
+        with silence():  # what is implausible was said when it was first made
+            return cls(links=links, gravity=gravity, effects=effects)
 
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
-        # The compiled scene is made anew; what is implausible was said when it was first made.
+        # The compiled scene is made anew.
         return type(self)._unpickled, (self.links, self.gravity, self.effects)
 
 
-_OBJECT = {
-    "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
-    "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
-}
+def check_parameter_names(scene: _core.Scene, names: Collection[Any]) -> None:
+    """Raise a ValueError for a name that the scene does not have, a TypeError if it is no text."""
+    for name in names:
+        if not isinstance(name, str):
+            raise TypeError(f'parameter {name!r}: must be a name, such as "link[1].mass"')
+    _core.check_parameter_names(scene, list(names))
 
 
-def _tuple_of(
-    noun: str, kind: type[Member], values: Iterable[Member], what: str
-) -> tuple[Member, ...]:
-    remedy = f"must be a list of {what}"
-    try:
-        values = tuple(values)
-    except TypeError:
-        raise TypeError(f"{noun}s = {values!r}: {remedy}") from None
-    for i, value in enumerate(values, start=1):
-        if isinstance(value, type) and issubclass(value, kind):
-            raise TypeError(
-                f"{noun} {i} = {value.__name__}: must be a {_OBJECT[noun]}; got the class itself"
-            )
-        if not isinstance(value, kind):
-            raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
-    return values
+def _with(owner: Any, path: list[str], value: float) -> Any:
+    """Return an effect, or a part of one, with another value at a path of names."""
+    name, *inner = path
+    if not inner:
+        return owner.replace(**{name: value})
+    held = getattr(owner, name)
+    if isinstance(held, Described):
+        return owner.replace(**{name: _with(held, inner, value)})
+    (components,) = (p.components for p in owner.description.parameters if p.name == name)
+    which = components.index(inner[0])
+    return owner.replace(**{name: tuple(value if k == which else x for k, x in enumerate(held))})
 
 
 def require_scene(scene: object) -> None:

@@ -11,9 +11,9 @@ from pendcore._messages.arguments import Floats, listed
 from pendcore._messages.html import beside, drawing, table
 from pendcore._run.curve import curve_of, span_of
 from pendcore._run.dense_output import with_dense_output
-from pendcore._run.methods import evaluations
 from pendcore._run.solution import Solution
 from pendcore._views.energy_drift import energy_drift
+from pendcore.methods import evaluations
 
 _POSES = 6
 """The number of poses in a drawing of a run."""

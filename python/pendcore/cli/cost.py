@@ -13,7 +13,7 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
-from pendcore.options import OPTIONS, limits_of_every_method
+from pendcore.options import OPTIONS
 
 _EPILOG = """
 what is written into the folder:
@@ -99,7 +99,7 @@ def execute(args: argparse.Namespace) -> int:
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
     """Return what was measured, and whether the measurement is complete."""
     options = {
-        name: value for name, value in case.options.items() if limits_of_every_method(OPTIONS[name])
+        name: value for name, value in case.options.items() if OPTIONS[name].limits_every_method
     }
     try:
         return accuracy_cost(

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import callback, close
+from pendcore.messages import reporting
 
 ROWS_AT_ONCE = 10_000
 """The number of rows of a CSV file between two reports of progress."""
@@ -22,14 +22,12 @@ def write_csv(solution: Solution, path: Path) -> None:
     links = range(1, len(solution.scene.links) + 1)
     names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
     rows = np.column_stack([solution.t, solution.q, solution.qd])
-    report = callback(None, f"writing {path.name}")
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(names)
-            for begin in range(0, len(rows), ROWS_AT_ONCE):
-                writer.writerows(rows[begin : begin + ROWS_AT_ONCE].tolist())
-                if report is not None:
-                    report(min(begin + ROWS_AT_ONCE, len(rows)) / len(rows))
-    finally:
-        close(report)
+    with (
+        reporting(None, f"writing {path.name}") as report,
+        path.open("w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(names)
+        for begin in range(0, len(rows), ROWS_AT_ONCE):
+            writer.writerows(rows[begin : begin + ROWS_AT_ONCE].tolist())
+            report(min(begin + ROWS_AT_ONCE, len(rows)) / len(rows))

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
-from pendcore.methods import line_style
+from pendcore.cost.runs import line_style
 from pendcore.plotting import as_drawn
 
 if TYPE_CHECKING:

@@ -16,21 +16,20 @@ import numpy.typing as npt
 
 from pendcore import ErrorEstimate, LyapunovExponents, Scene, lyapunov
 from pendcore.cost.horizon_work import HorizonPoint, HorizonWork
-from pendcore.cost.runs import Start
+from pendcore.cost.runs import Start, has_error_estimate, methods_named
 from pendcore.messages import (
     Progress,
-    callback,
-    close,
     forget_inner_runs,
     hand_over,
     numbers,
     positive,
+    reporting,
     require_scene,
     silence,
     time_limit_of,
     time_span,
 )
-from pendcore.methods import has_error_estimate, known_methods, methods_named
+from pendcore.methods import known_methods
 from pendcore.options import atol_beside
 
 METHODS = ("dopri5", "dop853", "taylor")
@@ -102,15 +101,14 @@ def horizon_work(
         raise ValueError(f"rtols = {rtols!r}: must hold a tolerance, and each be > 0 and < 1")
     choices = [(method, rtol) for method in names for rtol in tolerances]
     until = monotonic() + time_limit_of(time_limit)
-    report = callback(progress, "measuring")
     found: list[tuple[ErrorEstimate, HorizonPoint]] = []
     try:
-        for done, (method, tolerance) in enumerate(choices):
-            if monotonic() > until:
-                break
-            if report is not None:
+        with reporting(progress, "measuring") as report:
+            for done, (method, tolerance) in enumerate(choices):
+                if monotonic() > until:
+                    break
                 report(done / len(choices))
-            found.append(_point(start, method, tolerance, limit))
+                found.append(_point(start, method, tolerance, limit))
         work = _work(start, limit, choices, found)
         try:
             return replace(work, growth=_growth(start, work))
@@ -120,8 +118,6 @@ def horizon_work(
         forget_inner_runs(stopped)
         hand_over(stopped, work=_work(start, limit, choices, found))
         raise
-    finally:
-        close(report)
 
 
 def _methods(given: Iterable[str] | str | None, start: Start) -> list[str]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from pendcore import LyapunovExponents
-from pendcore.methods import line_style
+from pendcore.cost.runs import line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

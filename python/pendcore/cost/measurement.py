@@ -18,8 +18,8 @@ from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
-from pendcore.cost.runs import Start
-from pendcore.methods import has_error_estimate, known_methods, pair_of
+from pendcore.cost.runs import Start, has_error_estimate
+from pendcore.methods import known_methods, pair_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -14,7 +14,14 @@ import numpy as np
 
 import pendcore as pc
 from pendcore.cost.runs import Start
-from pendcore.methods import implicit_method, methods_of, most_accurate, pair_of, tightest_rtol
+from pendcore.methods import (
+    TIGHTEST,
+    TIGHTEST_IMPLICIT,
+    implicit_method,
+    known_methods,
+    most_accurate,
+    pair_of,
+)
 from pendcore.options import atol_beside
 
 if TYPE_CHECKING:
@@ -135,3 +142,14 @@ def _compared(runs: list[pc.Solution], times: Floats) -> Reference:
 
 def _text(solution: pc.Solution) -> str:
     return f"{solution.method} at rtol {float(solution.options['rtol']):.0e}, compensated"
+
+
+def methods_of(method: str) -> set[str]:
+    """Return a method's name and, for a pair, the names of its two methods."""
+    known = known_methods()[method]
+    return {method, known["first"], known["second"]} - {""}
+
+
+def tightest_rtol(method: str) -> float:
+    """Return the rtol below which a run by a method gets no more accurate."""
+    return TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST

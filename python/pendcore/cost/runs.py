@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy.typing as npt
@@ -40,3 +41,35 @@ class Start(NamedTuple):
         except ValueError:
             return False
         return True
+
+
+def methods_named(methods: str | Iterable[str]) -> list[str]:
+    """Return the names of methods to compare, without aliases and each once.
+
+    ``"auto"`` is refused: it may choose a different method at each tolerance.
+    """
+    names = {alias: name for name, m in known_methods().items() for alias in (name, *m["aliases"])}
+    try:
+        listed = [methods] if isinstance(methods, str) else list(methods)
+    except TypeError:
+        raise TypeError(f"methods = {methods!r}: must be names of methods, or one") from None
+    if not listed:
+        raise ValueError("methods: is empty: must name a method, or be left out")
+    for method in listed:
+        if method not in names:
+            what = "is a rule that chooses one" if method == "auto" else "is none"
+            raise ValueError(f"methods: {method!r} {what}: known are {', '.join(names)}")
+    return [*dict.fromkeys(names[method] for method in listed)]
+
+
+def has_error_estimate(method: str) -> bool:
+    """Return whether a method chooses its steps from tolerances."""
+    return bool(known_methods()[method]["error_order"])
+
+
+def line_style(method: str) -> dict[str, Any]:
+    """Return how figures draw a method: matplotlib's colour, dash and marker."""
+    color, dash, marker = known_methods()[method]["line"]
+    lengths = tuple(float(one) for one in dash.split()) if dash[0].isdigit() else None
+    linestyle = dash if lengths is None else (0, lengths)
+    return {"color": color, "linestyle": linestyle, "marker": marker}

@@ -12,15 +12,14 @@ import numpy.typing as npt
 from pendcore import Scene
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.measurement import Measurement
-from pendcore.cost.runs import Start
+from pendcore.cost.runs import Start, methods_named
 from pendcore.messages import (
     Progress,
-    callback,
-    close,
     finite_array,
     forget_inner_runs,
     hand_over,
     number,
+    reporting,
     require_scene,
     silence,
     text,
@@ -30,10 +29,8 @@ from pendcore.messages import (
     warn,
     whole_number,
 )
-from pendcore.methods import methods_named
 from pendcore.options import (
     atol_beside,
-    limits_of_every_method,
     require_options,
     with_options,
 )
@@ -47,7 +44,7 @@ POINTS = 101
 """The number of times at which errors are measured, both ends included."""
 
 
-@with_options(limits_of_every_method)
+@with_options(lambda option: option.limits_every_method)
 def accuracy_cost(
     scene: Scene,
     t_span: Iterable[float],
@@ -141,21 +138,16 @@ def accuracy_cost(
         repeats=_at_least(1, "repeats", repeats),
         time_limit=time_limit_of(time_limit),
     )
-    report = callback(progress, "measuring")
-    if report is not None:
-        measurement.report = report
     for message in scene.run_warnings(angles, span):
         warn(message)
     try:
-        with silence():  # they were given above
-            measurement.measure()
+        with silence(), reporting(progress, "measuring") as measurement.report:
+            measurement.measure()  # its warnings were given above
     except BaseException as stop:
         forget_inner_runs(stop)
         measurement.remarks.append("it was interrupted: this is what was measured until then")
         hand_over(stop, accuracy_cost=measurement.result())
         raise
-    finally:
-        close(report)
     return measurement.result()
 
 
