@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pendcore._ensemble.blocks import blocks_of, usual_block
-from pendcore._ensemble.distribution import InMemory, Limits, run_blocks
+from pendcore._ensemble.distribution import InMemory, run_blocks
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
 from pendcore._ensemble.new_store import bytes_of, in_words
@@ -49,15 +49,15 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
     if path is not None:
         what += f" into {path}, up to {in_words(bytes_of(members, request))}"
     report = callback(given["progress"], what, members.count, "members")
-    limits = Limits(workers, limit, report)
+    how = executor, workers, limit, report
     try:
         if path is not None:
             with store_for(Path(path), members, request, chunk) as store:
-                found = run_blocks(members, request, store.blocks, store, limits, executor)
+                found = run_blocks(members, request, store.blocks, store, *how)
         elif executor is not None:
             blocks = blocks_of(members.shape, chunk or usual_block(members, request))
             target = InMemory(members, request)
-            found = run_blocks(members, request, blocks, target, limits, executor)
+            found = run_blocks(members, request, blocks, target, *how)
         else:
             found = run_members(members, request, workers, limit, report)
     finally:
