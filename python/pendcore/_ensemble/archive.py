@@ -12,8 +12,8 @@ import numpy as np
 from pendcore._cases.npz import Entries, entries_of
 from pendcore._cases.whole_file import whole_file
 from pendcore._ensemble.about import SHAPE, VARY, about, read_about, read_sizes
-from pendcore._ensemble.coordinates import coordinates, members_from
 from pendcore._ensemble.ensemble import Ensemble
+from pendcore._ensemble.members import coordinates, members_from
 from pendcore._ensemble.run import SUMMED
 
 ENTRY = "ensemble"

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._ensemble.members import Members
+from pendcore._ensemble.members import Members, coordinates, member_axes
 from pendcore._ensemble.request import NOT_RUN, Request
 from pendcore._ensemble.states import Quantity, quantity_of_states
 from pendcore._messages.arguments import Floats
@@ -375,9 +375,24 @@ class Ensemble:
         >>> found.to_xarray().sizes["member_0"]
         2
         """
-        from pendcore._ensemble.export import to_xarray
-
-        return to_xarray(self)
+        try:
+            import xarray as xr
+        except ImportError:
+            raise ImportError("to_xarray() needs xarray: pip install xarray") from None
+        axes, request = member_axes(self.shape), self.request
+        data: dict[str, Any] = {}
+        coords: dict[str, Any] = {
+            x.name: (x.axes, x.values, {"units": x.unit}) for x in coordinates(self.members)
+        }
+        for one in request.variables(len(self.members.scene.links)):
+            values = self.status if one.name == "status" else self._read(one.name)
+            data[one.name] = ([*axes, *one.labels], values, {"units": one.unit} if one.unit else {})
+            coords |= {axis: list(labels) for axis, labels in one.labels.items()}
+        if request.t_eval is not None:
+            coords["time"] = ("time", request.t_eval, {"units": "s"})
+        told = {"scene": repr(self.members.scene), "t_span": list(request.t_span),
+                "pendcore": _core.__version__}  # fmt: skip
+        return xr.Dataset(data, coords=coords, attrs=told)
 
     def __len__(self) -> int:
         return self.members.count
