@@ -1,8 +1,8 @@
 """Results on disk, block by block: a group of Zarr 3, which xarray reads.
 
-Each variable of the result is an array whose chunks are the blocks of the ensemble. The status of a
-block is written last, so that a block counts as done only if all of it is there. A store holds
-neither times of day nor names of machines: two runs of one ensemble write the same bytes.
+Each variable of the result is an array whose chunks are the blocks of the ensemble. A block counts
+as done if all of its files are there. A store holds neither times of day nor names of machines: two
+runs of one ensemble write the same bytes.
 """
 
 from __future__ import annotations

@@ -89,15 +89,11 @@ def _checked(found: Ensemble, on_failure: str) -> Ensemble:
     place = tuple(found.failed[0].tolist())
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
-    if on_failure == "raise":
-        try:
-            raise RuntimeError(complaint)
-        except RuntimeError as error:
-            hand_over(error, ensemble=found)
-            raise
     try:
+        if on_failure == "raise":
+            raise RuntimeError(complaint)
         warn(f"{complaint}; {REMEDY}")
-    except PendcoreWarning as warning:
-        hand_over(warning, ensemble=found)
+    except (RuntimeError, PendcoreWarning) as error:
+        hand_over(error, ensemble=found)
         raise
     return found

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import re
 import sys
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from pendcore import AccuracyError, Case, Solution
 from pendcore.case_files import with_line
-from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
+from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.parameters import with_parameters
 from pendcore.cli.summary import facts, text
-from pendcore.cli.table import write_csv
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cli.words import CHOSEN_FOR_ERROR
+from pendcore.messages import callback, close
 from pendcore.plotting import save_figure
 
-_EPILOG = """
+HELP = "simulate a case, write solution, summary and figure"
+DESCRIPTION = "Simulate a case; without one, the textbook's double pendulum."
+EPILOG = """
 what is written into the folder:
   solution.npz   t (s), q (rad), qd (rad/s), y, the case as TOML; pendcore.load() reads it whole
   summary.txt    what was simulated, how it ended, what it took, drift of energy, largest reactions
@@ -54,17 +60,12 @@ FILES = ("summary.txt", "summary.json", "solution.npz", "angles.png")
 CSV = "states.csv"
 _MANY_STEPS = 100_000
 """The number of steps above which writing the solution takes seconds."""
+_ROWS_AT_ONCE = 10_000
+"""The number of rows of a CSV file between two reports of progress."""
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "run",
-        help="simulate a case, write solution, summary and figure",
-        description="Simulate a case; without one, the textbook's double pendulum.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     add_case_and_folder(parser)
     parser.add_argument(
         "--error",
@@ -98,7 +99,6 @@ def add_parser(commands: Any) -> None:
         "--csv", action="store_true", help=f"write the states into {CSV} as well, a row per time"
     )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -193,7 +193,28 @@ def _write(
         solution.save(files.folder / "solution.npz")
     if CSV in files.names:
         with files.one(CSV) as path:
-            write_csv(solution, path)
+            _write_csv(solution, path)
     with files.one("angles.png") as path:
         save_figure(solution, path, until)
     return found
+
+
+def _write_csv(solution: Solution, path: Path) -> None:
+    """Write a row per time: t (s), q_1.. (rad), qd_1.. (rad/s), every number with all its digits.
+
+    The first row names columns and units. A jump has two rows at one time.
+    """
+    links = range(1, len(solution.scene.links) + 1)
+    names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
+    rows = np.column_stack([solution.t, solution.q, solution.qd])
+    report = callback(None, f"writing {path.name}")
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for begin in range(0, len(rows), _ROWS_AT_ONCE):
+                writer.writerows(rows[begin : begin + _ROWS_AT_ONCE].tolist())
+                if report is not None:
+                    report(min(begin + _ROWS_AT_ONCE, len(rows)) / len(rows))
+    finally:
+        close(report)

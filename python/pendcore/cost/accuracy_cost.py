@@ -6,13 +6,13 @@ import json
 import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from math import inf, isfinite
+from math import inf
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
-from pendcore.messages import number, whole_file
+from pendcore.messages import as_json, number, whole_file
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -141,7 +141,7 @@ class AccuracyCost:
         """Return everything as JSON can hold it: infinite numbers become None."""
         best = [(p.method, p.rtol, p.step) for p in self.pareto()]
         points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
-        plain: dict[str, Any] = _plain(asdict(self) | {"points": points})
+        plain: dict[str, Any] = as_json(asdict(self) | {"points": points})
         return plain
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
@@ -220,11 +220,3 @@ def _asked(error: float) -> float:
     if not asked > 0:
         raise ValueError(f"error = {asked!r}: must be > 0, a share of the total length")
     return asked
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(x) for key, x in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(x) for x in value]
-    return None if isinstance(value, float) and not isfinite(value) else value

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import platform
 import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from math import inf
+from pathlib import Path
 from statistics import median
 from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, Any
@@ -15,7 +17,6 @@ import numpy as np
 import pendcore as pc
 from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
 from pendcore.cost.runs import Start
@@ -302,3 +303,14 @@ class Measurement:
         span = abs(self.start.t_end - self.start.t_start)
         longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
         return [float(longest / 2**k) for k in range(14)]
+
+
+def processor() -> str:
+    """Return the processor, without which times mean nothing, as the kernel calls it."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return platform.processor() or platform.machine()
+    facts = dict(line.split(":", 1) for line in text.splitlines() if ":" in line)
+    names = {key.strip(): value.strip() for key, value in facts.items()}
+    return names.get("model name", platform.machine())

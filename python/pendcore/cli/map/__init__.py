@@ -7,7 +7,6 @@ import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,9 @@ from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
 from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
 
-_EPILOG = """
+HELP = "draw a number over a plane of starts or parameters, and which pixels are resolved"
+DESCRIPTION = "Run the case at every pixel of a map."
+EPILOG = """
 the case has a table
   [map]
   show = "first_event"     # or "largest_exponent", "energy_drift", "q[1]", "qd[2]" at the end
@@ -55,15 +56,8 @@ class Pixels:
     forbidden: int = 0
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "map",
-        help="draw a number over a plane of starts or parameters, and which pixels are resolved",
-        description="Run the case at every pixel of a map.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
@@ -88,7 +82,6 @@ def add_parser(commands: Any) -> None:
         "--no-trust", action="store_true", help="leave out the second runs that confirm pixels"
     )
     parser.add_argument("--workers", type=int, metavar="N", help="threads; default: all processors")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
