@@ -21,10 +21,10 @@ from typing import ClassVar
 import numpy as np
 
 from pendcore import _core
-from pendcore._accuracy.aim import aimed
 from pendcore._accuracy.estimate import apart, error_over
 from pendcore._accuracy.position_error import angles_at
 from pendcore._accuracy.rounding import moved, neighbours
+from pendcore._accuracy.second_runs import aimed
 from pendcore._accuracy.trials import TrialRun, Trials
 from pendcore._accuracy.tuning import EXPENSIVE, FIRST_BY_DEFECT, LEAST_CHANGE, UNSTABLE
 from pendcore._run.accuracy import DEFECT
@@ -84,7 +84,12 @@ class FromDefect:
         correction, text = trial.correction, f"the {DEFECT}{trial.text}"
         if correction is None or trial.solution.stats.stiff:
             return None
-        return runs.remembered(trial, lambda: self.error(trial.solution, correction, text))
+        key = (trial,)
+        if key not in runs.estimates:
+            if (error := self.error(trial.solution, correction, text)) is None:
+                return None
+            runs.estimates[key] = error
+        return runs.estimates[key]
 
     def next_run(self, runs: Trials) -> TrialRun | None:
         """Make a tighter trial; None where the defect of the last one did not tell its error."""

@@ -300,9 +300,6 @@ def _is_lost(solution: Solution, second: Solution) -> bool:
     """Return whether two runs have nothing to do with each other where the second one ended."""
     last = np.array([second._run.t_reached])
     if solution.store != "dense":
-        last = kept_times(solution)
-        last = last[reached(second, last)][-1:]
-    if not len(last):
-        return False
+        last = _common_times(solution, [second])[-1:]
     difference = largest_difference(angles_at(solution, last), angles_at(second, last))
-    return not bool((difference < LOST).all())
+    return not bool((difference < LOST).all())  # no time, no difference

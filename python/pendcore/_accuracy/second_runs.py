@@ -10,12 +10,12 @@ from __future__ import annotations
 
 from math import inf
 
-from pendcore._accuracy.aim import aimed
 from pendcore._accuracy.estimate import SPARE_OF_SEVERAL
 from pendcore._accuracy.method_choice import leading
 from pendcore._accuracy.rounding import neighbours
 from pendcore._accuracy.trials import TrialRun, Trials
 from pendcore._accuracy.tuning import (
+    AIM,
     ALIKE,
     BETTER,
     BETTER_SERIES,
@@ -86,6 +86,33 @@ def second_run(runs: Trials, trial: TrialRun) -> TrialRun:
     if better_than(runs, trial):
         return runs.second(trial, min(second.scale for second in runs.seconds) / BETTER_STILL)
     return runs.second(trial, trial.scale / (SPARED * better_by(trial)))
+
+
+def aimed(
+    runs: Trials, trial: TrialRun, error: ErrorEstimate, distance: ErrorEstimate | None = None
+) -> float:
+    """Return the scale at which a run likely keeps the error.
+
+    ``distance`` is that from a second run, where the error of the trial is not verified by it.
+    """
+    if error.is_lost or error.largest > max(NOTHING_IN_COMMON, runs.error):
+        return _scale_before_it_grew(runs, trial, distance or error)
+    return trial.scale * AIM * runs.error / max(error.largest, 1e-9 * runs.error)
+
+
+def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate) -> float:
+    """Return the scale at which a chaotic motion keeps the error to its end.
+
+    Errors grow as exp(rate t); the rate follows from the time at which the error becomes large.
+    """
+    begin = runs.start.t_start
+    until = distance.valid_until(NOTHING_IN_COMMON, of="position") - begin
+    farther = trial.scale / FARTHER
+    if not until or trial.scale >= NOTHING_IN_COMMON:
+        return farther
+    whole = trial.solution.t_reached - begin
+    grown: float = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
+    return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
 
 
 def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> float | None:

@@ -106,7 +106,7 @@ def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
                 if error is not None and error.tells_the_end and error.largest <= runs.error:
                     return runs.concluded(trial.solution, "kept", error)
         elif latest in runs.trials and latest is not runs.tightest_trial:
-            runs.drop(latest)  # a tighter trial came to the end, so this one shows nothing
+            runs.trials.remove(latest)  # a tighter trial came to the end, so this one shows nothing
         else:
             return _not_finished(runs, latest)
         next_one = strategy.next_run(runs) if len(runs.paid) < MOST_RUNS else None
@@ -153,7 +153,7 @@ def _first_trial(runs: Trials, strategy: Strategy) -> TrialRun:
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.t_reached
-        runs.drop(trial)
+        runs.trials.remove(trial)
         trial = runs.trial(trial.scale / FARTHER, trial.method)
         if abs(trial.solution.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
             break  # both say that the motion ends there

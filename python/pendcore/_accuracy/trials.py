@@ -117,7 +117,7 @@ class Trials:
         self.trials: list[TrialRun] = []
         self.seconds: list[TrialRun] = []
         self.paid: list[TrialRun] = []
-        self._estimates: dict[tuple[Any, ...], ErrorEstimate] = {}
+        self.estimates: dict[tuple[Any, ...], ErrorEstimate] = {}
         self._done = 0.0
 
     @property
@@ -141,11 +141,6 @@ class Trials:
     def any_effect(self, has: Callable[[Description], bool]) -> bool:
         """Whether some effect of the scene has a property."""
         return any(has(effect.description) for effect in self.start.scene.effects)
-
-    @property
-    def warns(self) -> bool:
-        """Whether the next run is the first of all, which gives the warnings about the start."""
-        return self.tries_the_least and not self.paid
 
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
@@ -181,10 +176,6 @@ class Trials:
         self.paid += other.paid
         self._done = other._done
 
-    def drop(self, trial: TrialRun) -> None:
-        """Forget a trial that was too loose to come to its end."""
-        self.trials.remove(trial)
-
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Make a run that is better than a trial, with other steps, constants and start."""
         method = implicit_method()
@@ -210,22 +201,11 @@ class Trials:
     ) -> ErrorEstimate:
         """Return the error of a trial as estimated from second runs; see `estimate`."""
         key = (trial, *seconds, share)
-        if key not in self._estimates:
+        if key not in self.estimates:
             text = " and ".join(dict.fromkeys(second.text for second in seconds))
             solutions = [second.solution for second in seconds]
-            self._estimates[key] = estimate(trial.solution, solutions, text, share)
-        return self._estimates[key]
-
-    def remembered(
-        self, trial: TrialRun, found: Callable[[], ErrorEstimate | None]
-    ) -> ErrorEstimate | None:
-        """Return the error that a trial's own defect shows, found once."""
-        if (trial,) not in self._estimates:
-            error = found()
-            if error is None:
-                return None
-            self._estimates[trial,] = error
-        return self._estimates[trial,]
+            self.estimates[key] = estimate(trial.solution, solutions, text, share)
+        return self.estimates[key]
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
         """Return how far a trial is at most from one second run, as a share of the length."""
@@ -258,7 +238,7 @@ class Trials:
         return solution
 
     def _bill(self, solution: Solution, error: ErrorEstimate | None) -> tuple[Paid, ...]:
-        estimates = self._estimates.items()
+        estimates = self.estimates.items()
         verifying = next((key[1:-1] for key, value in estimates if value is error), ())
         paid = []
         for made in self.paid:
@@ -266,7 +246,7 @@ class Trials:
             purpose = "run" if is_own else "verify" if made in verifying else "choose"
             paid.append(Paid(purpose, made.method, made.rtol, made.solution.stats.nfev, made.work))
             if made.correction is not None:
-                is_known_by_it = error is not None and self._estimates.get((made,)) is error
+                is_known_by_it = error is not None and self.estimates.get((made,)) is error
                 purpose = "verify" if is_known_by_it else "choose"
                 nfev = made.correction.nfev
                 work = correction_work(self.start.scene) * nfev
@@ -302,10 +282,11 @@ class Trials:
     ) -> TrialRun:
         is_second = start.scene is not self.start.scene
         compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
+        is_first = self.tries_the_least and not self.paid  # the warnings about the start are its
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=warn if self.warns else silent, correction=correction,
+            warn=warn if is_first else silent, correction=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from math import pi
 from types import MappingProxyType
 from typing import Any, Self
@@ -12,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._messages.arguments import finite_array, text, vector
+from pendcore._messages.arguments import numbers, text, vector
 from pendcore._run.events import Event, Function, events_asked_for
 from pendcore._run.keywords import OnFailure
 from pendcore._run.options import RUN_DEFAULTS
@@ -82,7 +83,7 @@ class Case:
         object.__setattr__(self, "scene", scene)
         object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
         object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
-        object.__setattr__(self, "t_span", _pair("t_span", t_span, "s"))
+        object.__setattr__(self, "t_span", numbers("t_span", t_span, "s", 2))
         object.__setattr__(self, "name", text("name", name))
         object.__setattr__(self, "options", MappingProxyType(given))
 
@@ -193,7 +194,7 @@ class Case:
 
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping does not pickle, so the case is made anew.
-        return _case, (type(self), self._values())
+        return partial(type(self), **self._values()), ()
 
 
 def has_own_functions(solution: Solution) -> bool:
@@ -209,17 +210,6 @@ def refuse_functions(scene: Scene, events: Iterable[Event], done: str, remedy: s
 
 def _own_functions(scene: Scene, events: Iterable[Event]) -> list[OwnEffect | Function]:
     return [one for one in (*scene.effects, *events) if isinstance(one, OwnEffect | Function)]
-
-
-def _case(cls: type[Case], values: dict[str, Any]) -> Case:
-    return cls(**values)
-
-
-def _pair(name: str, value: npt.ArrayLike, unit: str) -> tuple[float, float]:
-    array = finite_array(name, value, unit)
-    if array.shape != (2,):
-        raise ValueError(f"{name}: shape {array.shape}: must be (2,) ({unit})")
-    return float(array[0]), float(array[1])
 
 
 def _plain(value: Any) -> Any:

@@ -32,7 +32,6 @@ import os
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
-from difflib import get_close_matches
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -41,7 +40,7 @@ import numpy as np
 
 from pendcore._cases.case import Case
 from pendcore._cases.toml_text import Place, TomlText
-from pendcore._messages.arguments import vector
+from pendcore._messages.arguments import did_you_mean, vector
 from pendcore._run.events import KINDS as EVENT_KINDS
 from pendcore._run.events import Event, Function
 from pendcore._run.options import RUN_DEFAULTS
@@ -220,15 +219,12 @@ def _kind(
 
 def _remedy(noun: str, kind: object, keys: Iterable[str], kinds: Collection[str]) -> str:
     """Return what to write for a kind that cannot stand in a file."""
-    known = ", ".join(keys)
     if not isinstance(kind, str):
-        return f"must be one of {known}"
+        return f"must be one of {', '.join(keys)}"
     if kind in kinds:
         where = "to the scene" if noun == "effect" else "to events"
         return f"is a function, which a file cannot hold: add it {where} in Python"
-    near = get_close_matches(kind, keys, n=1, cutoff=0.5)
-    remedy = f"did you mean {near[0]!r}?" if near else f"known are {known}"
-    return f"is no {noun}: {remedy}"
+    return f"is no {noun}: {did_you_mean(kind, keys)}"
 
 
 def _start(text: TomlText, n: int) -> tuple[Sequence[float], Sequence[float] | float]:

@@ -64,8 +64,9 @@ def _loaded(entries: Entries) -> Ensemble:
     shape = read_sizes(told, SHAPE, 0)
     scene, request = read_about(told, entries.get("time"))
     endings = ("finished", "time_limit", "interrupted")
-    ending, statistics, axes = (told.get(name) for name in ("ending", "statistics", "axes"))
-    require(told, "ending", ending in endings, f"one of {', '.join(endings)}")
+    require(told, "ending", told.get("ending") in endings, f"one of {', '.join(endings)}")
+    statistics: Any = told.get("statistics")
+    axes: Any = told.get("axes")
     keys = {*statistics} if isinstance(statistics, dict) else {""}
     require(told, "statistics", keys in ({*()}, {*SUMMED}), f"of {', '.join(SUMMED)}, or nothing")
     names = ["q0", "qd0", *told[VARY]]
@@ -81,4 +82,4 @@ def _loaded(entries: Entries) -> Ensemble:
         found = arrays[one.name] = entries[one.name]
         if found.shape != (*shape, *one.shape) or found.dtype != one.dtype:
             raise ValueError(f"{one.name} has another shape or type than that of the members")
-    return Ensemble(members, request, arrays, ending, statistics)
+    return Ensemble(members, request, arrays, told["ending"], statistics)

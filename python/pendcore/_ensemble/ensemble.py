@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from operator import index as whole
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +14,18 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._ensemble.members import Members, coordinates, member_axes
 from pendcore._ensemble.request import NOT_RUN, Request
-from pendcore._ensemble.states import Quantity, quantity_of_states
 from pendcore._messages.arguments import Floats
 from pendcore._messages.html import table
 from pendcore._messages.progress import Progress
+from pendcore._messages.warning import silence
 from pendcore._run.energy import Energy
 from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Quantity = Callable[[_core.Scene, Floats, Floats, Floats], Floats]
+"""A quantity of k states of one scene, (k, ...), from times (k,), angles and rates (k, n)."""
 
 
 class Ensemble:
@@ -144,7 +148,27 @@ class Ensemble:
         return self._of_states(lambda scene, t, q, qd: scene.positions(t, q))
 
     def _of_states(self, quantity: Quantity) -> Floats:
-        return quantity_of_states(quantity, self.members, self.t, self.q, self.qd)
+        """Return a quantity of every state that was kept; NaN where a member was refused."""
+        members, q, qd = self.members, self.q, self.qd
+        axes, n = q.shape[:-1], q.shape[-1]
+        times = np.broadcast_to(self.t, axes)
+
+        def computed(scene: _core.Scene, t: Floats, angles: Floats, rates: Floats) -> Floats:
+            found = quantity(scene, t.reshape(-1), angles.reshape(-1, n), rates.reshape(-1, n))
+            return found.reshape(*t.shape, *found.shape[1:])
+
+        if not members.vary:
+            values = computed(members.scene._compiled, times, q, qd)
+        else:
+            one = computed(members.scene._compiled, np.zeros(1), np.zeros((1, n)), np.zeros((1, n)))
+            values = np.full((*axes, *one.shape[1:]), np.nan)
+            with silence():  # of implausible parameters
+                for place in np.ndindex(members.shape):
+                    with suppress(ValueError):  # it was refused
+                        scene = members.scene_of(place)
+                        values[place] = computed(scene._compiled, times[place], q[place], qd[place])
+        values[np.isnan(q).any(axis=-1)] = np.nan  # positions() has a pivot even without a state
+        return values
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.

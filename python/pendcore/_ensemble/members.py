@@ -159,7 +159,7 @@ def coordinates(members: Members) -> list[Coordinate]:
 
 
 def members_from(
-    scene: Scene, shape: Index, found: dict[str, tuple[Sequence[str], Floats]]
+    scene: Scene, shape: Index, found: Mapping[str, tuple[Sequence[str], Floats]]
 ) -> Members:
     """Return the members of a scene that have these coordinates: name to axes and values."""
     axes, n = member_axes(shape), len(scene.links)

@@ -71,8 +71,8 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
         try:
             group = zarr.create_group(building, zarr_format=3)
             starts = coordinates(members)
-            for one in starts:
-                _put(group, one.name, one.values, one.axes, one.unit)
+            for start in starts:
+                _put(group, start.name, start.values, start.axes, start.unit)
             variables = request.variables(len(members.scene.links))
             labels = {axis: values for one in variables for axis, values in one.labels.items()}
             for axis, values in labels.items():

@@ -8,7 +8,7 @@ runs of one ensemble write the same bytes.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
@@ -102,8 +102,7 @@ class Store:
     def write(self, block: Block, arrays: Arrays) -> None:
         """Write the results of a block."""
         self.require_there()
-        with _writing(self.path, self.place):
-            _write(self.place, self.zarr_arrays, block, arrays)
+        _write(self.path, self.place, lambda: self.zarr_arrays, block, arrays)
 
     def require_there(self) -> None:
         """Raise an OSError if the folder that was opened is no longer under its name."""
@@ -124,34 +123,35 @@ class Store:
 
 def write_block(path: Path, variables: list[Variable], block: Block, arrays: Arrays) -> None:
     """Write the results of a block into a store, without reading the rest of it."""
-    with _writing(path, path):
-        zarr_arrays = {one.name: _zarr_array(path, one.name, "r+") for one in variables}
-        _write(path, zarr_arrays, block, arrays)
+
+    def opened() -> dict[str, Any]:
+        return {one.name: _zarr_array(path, one.name, "r+") for one in variables}
+
+    _write(path, path, opened, block, arrays)
 
 
-@contextmanager
-def _writing(path: Path, place: Path) -> Iterator[None]:
+def _write(
+    path: Path, place: Path, opened: Callable[[], dict[str, Any]], block: Block, arrays: Arrays
+) -> None:
     """See that a store is there before and after it is written: Zarr would make folders anew."""
-    if not is_there(place):
-        raise moved(path)
+    files: list[str] = []
     try:
+        if not is_there(place):
+            raise moved(path)
         with named(path):
-            yield
+            zarr_arrays = opened()
+            files = _files(zarr_arrays, block)
+            for name in reversed(zarr_arrays):  # the status is the first, and is written last
+                zarr_arrays[name][block] = arrays[name]
+        if not is_there(place):
+            raise moved(path)
     except Exception as error:
         if is_there(place) and not isinstance(error, FileNotFoundError):
             raise
         raise moved(path) from error
-    if not is_there(place):
-        raise moved(path)
-
-
-def _write(place: Path, zarr_arrays: dict[str, Any], block: Block, arrays: Arrays) -> None:
-    try:
-        for name in reversed(zarr_arrays):  # the status is the first of them, and is written last
-            zarr_arrays[name][block] = arrays[name]
     finally:
         if not is_there(place):
-            _take_back(place, _files(zarr_arrays, block))
+            _take_back(place, files)
 
 
 def _take_back(place: Path, files: list[str]) -> None:

@@ -57,7 +57,6 @@ class Ledger(dict[str, Floats]):
         return [*super().__dir__(), *self]
 
     __eq__ = object.__eq__  # that of a dictionary would compare arrays
-    __hash__ = object.__hash__
 
     def __repr__(self) -> str:
         if not len(self.residual):

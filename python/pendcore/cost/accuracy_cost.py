@@ -127,10 +127,24 @@ class AccuracyCost:
         return f"{advice}; ten times the accuracy costs {there / here:.2g} times the time"
 
     def plot(self, ax: Any = None, *, y: str = "time", **line_properties: Any) -> list[Line2D]:
-        """Draw the work-precision diagram; see `pendcore.cost.figure.plot`.
+        """Draw time, or right-hand sides, against error; both axes logarithmic.
 
-        ``ax`` is a matplotlib axes; ``y`` is ``"time"`` or ``"nfev"``; the rest are properties of
-        matplotlib's ``Line2D``. The lines are returned, one per method.
+        Filled marks lie on the Pareto front: no other point is both more accurate and faster. In
+        the shaded region errors cannot be told apart, as the reference is uncertain by as much.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Default: a new figure of pyplot's, which is not shown.
+        y : {"time", "nfev"}
+            What is drawn upwards: the least time of a call, or right-hand sides.
+        **line_properties
+            Passed on to matplotlib's ``Line2D``.
+
+        Returns
+        -------
+        list of Line2D
+            One per method.
         """
         start, end = self.t_span
         title = f"{self.name or 'chain of links'}, {start:.4g} to {end:.4g} s"

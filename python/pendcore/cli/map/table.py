@@ -43,14 +43,6 @@ class MapAxis:
         from_middle = np.arange(self.count) - 0.5 * (self.count - 1)
         return np.asarray(0.5 * (self.start + self.stop) + width * from_middle, dtype=np.float64)
 
-    def across(self, start: float, stop: float) -> MapAxis:
-        """Return the same number of pixels between other ends."""
-        return MapAxis(self.name, start, stop, self.count)
-
-    def with_count(self, count: int) -> MapAxis:
-        """Return another number of pixels between the same ends."""
-        return MapAxis(self.name, self.start, self.stop, count)
-
 
 @dataclass(frozen=True, slots=True)
 class MapTable:
