@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from math import inf
+from time import monotonic
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from pendcore._accuracy.trials import Strategy, TrialRun, Trials
 from pendcore._accuracy.tuning import (
     AT_FEW_TIMES,
     FARTHER,
+    FEW,
     HOPELESS,
     IF_DAMPED,
     LARGE_ANGLE,
@@ -118,7 +120,9 @@ def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
 
 def _first_scale(runs: Trials, factor: float) -> float:
     """Return the scale of a first trial: a factor times the error asked for, or looser."""
-    if runs.keeps_few_times:
+    store, t_eval = runs.options["store"], runs.options["t_eval"]
+    are_few = t_eval is not None and np.size(t_eval) < FEW
+    if store == "end" or (are_few and store != "dense"):
         factor *= AT_FEW_TIMES
     if runs.any_effect(lambda effect: effect.damps_small_motions):
         factor *= IF_DAMPED
@@ -175,7 +179,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> Solution:
         seconds = [second_run(runs, latest) for _ in range(tight_runs(latest) or 2)]
         error = runs.compared(latest, seconds)
     solution = runs.concluded(latest.solution, "ended early", error)
-    if not error.is_complete and runs.is_out_of_time:
+    if not error.is_complete and monotonic() - runs.began >= runs.time_limit:
         solution.known_error = None  # a later call with more time may complete the estimate
     return solution
 

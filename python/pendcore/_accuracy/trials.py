@@ -8,8 +8,6 @@ from math import inf
 from time import monotonic
 from typing import Any, Protocol
 
-import numpy as np
-
 from pendcore._accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
@@ -25,7 +23,7 @@ from pendcore._accuracy.method_choice import (
     same_or_other,
 )
 from pendcore._accuracy.rounding import moved
-from pendcore._accuracy.tuning import COMPENSATED_BELOW, FEW, FIRST_COUNTS_AS, FOR_BOTH, MOST_STEPS
+from pendcore._accuracy.tuning import COMPENSATED_BELOW, FIRST_COUNTS_AS, FOR_BOTH, MOST_STEPS
 from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
 from pendcore._messages.warning import warn
@@ -127,16 +125,6 @@ class Trials:
     @property
     def tightest_trial(self) -> TrialRun:
         return min(self.trials, key=lambda trial: trial.scale)
-
-    @property
-    def is_out_of_time(self) -> bool:
-        return monotonic() - self.began >= self.time_limit
-
-    @property
-    def keeps_few_times(self) -> bool:
-        store, t_eval = self.options["store"], self.options["t_eval"]
-        few = t_eval is not None and np.size(t_eval) < FEW
-        return store == "end" or (few and store != "dense")
 
     def any_effect(self, has: Callable[[Description], bool]) -> bool:
         """Whether some effect of the scene has a property."""

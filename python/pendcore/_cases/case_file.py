@@ -1,30 +1,4 @@
-"""A case from TOML; docs/how_to/case_files.md is the reference of its keys.
-
-A case::
-
-    name = "double pendulum, section 2.1"
-    gravity = 9.807                 # m/s^2
-    [[link]]                        # a table per link, from the pivot outwards
-    mass = 1.0                      # kg
-    length = 1.0                    # m; center and inertia as in pendcore.Link
-    [[link]]
-    mass = 1.0
-    length = 1.0
-    [[effect]]                      # a table per effect; none is needed
-    kind = "viscous_joint"          # any of pendcore.effects.kinds(), and its parameters
-    joint = 1
-    damping = 0.1                   # N m s/rad
-    [[event]]                       # a table per event to look for; none is needed
-    kind = "rate_zero"              # any of pendcore.events but Function, and its parameters
-    joint = 2
-    [start]
-    q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
-    qd = [0.0, 0.0]                 # rad/s; 0 if left out; one number holds for every link
-    [run]
-    t_start = 0.0                   # s; 0 if left out
-    t_end = 5.0                     # s
-    method = "dop853"               # this and any other keyword of pendcore.simulate
-"""
+"""A case from TOML: docs/how_to/case_files.md has its keys, examples/03_case_file.toml is one."""
 
 from __future__ import annotations
 

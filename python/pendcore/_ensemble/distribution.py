@@ -83,13 +83,18 @@ def run_blocks(
     statistics: Counter[str] = Counter()
     ending, error = "finished", None
 
-    def left() -> Iterator[Block]:
+    def is_run(block: Block) -> None:
         nonlocal done
+        done += size_of(block)
+        if report is not None:
+            report(done / total)
+
+    def left() -> Iterator[Block]:
         for block in blocks:
-            if not target.is_done(block):
-                yield block
+            if target.is_done(block):
+                is_run(block)
             else:
-                done += size_of(block)
+                yield block
 
     def one_by_one() -> Generator[Result]:
         for block in left():
@@ -103,8 +108,9 @@ def run_blocks(
                     raise found.error
                 finally:
                     del found  # its exception holds this frame, and would wait for the collector
-            if found.ending == "finished":
-                yield block, found.arrays, found.statistics
+            if found.ending != "finished":
+                return
+            yield block, found.arrays, found.statistics
 
     if executor is None:
         results = one_by_one()
@@ -123,9 +129,7 @@ def run_blocks(
                 elif isinstance(target, Store):
                     target.require_there()
                 statistics.update(counted)
-                done += size_of(block)
-                if report is not None:
-                    report(done / total)
+                is_run(block)
         if done < total:
             ending = "time_limit"
         else:

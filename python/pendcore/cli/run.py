@@ -13,14 +13,13 @@ from typing import Any
 import numpy as np
 
 from pendcore import AccuracyError, Case, Solution
-from pendcore.case_files import with_line
+from pendcore.case_files import KEYS, with_line
 from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
-from pendcore.cli.parameters import with_parameters
 from pendcore.cli.summary import facts, text
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
-from pendcore.cli.words import CHOSEN_FOR_ERROR
+from pendcore.cli.words import CHOSEN_FOR_ERROR, of_the_run
 from pendcore.messages import callback, close
 from pendcore.plotting import save_figure
 
@@ -58,6 +57,7 @@ a case:
 
 FILES = ("summary.txt", "summary.json", "solution.npz", "angles.png")
 CSV = "states.csv"
+_START = re.compile(r"(q0|qd0)\[(\d+)\]")
 _MANY_STEPS = 100_000
 """The number of steps above which writing the solution takes seconds."""
 _ROWS_AT_ONCE = 10_000
@@ -105,7 +105,7 @@ def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
-        case = with_parameters(case, args.parameters) if args.parameters else case
+        case = _with_parameters(case, args.parameters) if args.parameters else case
         case = _with_options(case, _options_of(args))
     folder = folder_of(args)
     with new_folder(folder):
@@ -151,6 +151,45 @@ def _options_of(args: argparse.Namespace) -> dict[str, Any]:
     """Return the options of the run that the command line has."""
     found = {name: getattr(args, name) for name in ("error", *CHOSEN_FOR_ERROR)}
     return {name: value for name, value in found.items() if value is not None}
+
+
+def _with_parameters(case: Case, given: list[str]) -> Case:
+    """Return the case with numbers replaced, each ``NAME=VALUE``.
+
+    A name is that of a parameter of the scene, or of the start: ``q0[1]``, ``qd0[2]``.
+    """
+    starts = {"q0": list(case.q0), "qd0": list(case.qd0)}
+    of_scene: dict[str, float] = {}
+    names: set[str] = set()
+    for one in given:
+        name, equals, text = one.partition("=")
+        if name in names:
+            raise UsageError(f"--parameters {one}: {name} is given twice: give it once")
+        names.add(name)
+        if name in KEYS["run"]:
+            shorter = f", or give --{name} {text}" if name in ("error", *CHOSEN_FOR_ERROR) else ""
+            raise UsageError(f"--parameters {one}: {of_the_run(name, text)}{shorter}")
+        try:
+            value = float(text)
+        except ValueError:
+            equals = ""
+        if not equals:
+            raise UsageError(f"--parameters {one}: must be NAME=VALUE, such as link[2].mass=0.9")
+        start = _START.fullmatch(name)
+        if name in starts:
+            raise UsageError(f"--parameters {one}: must say of which link, such as {name}[1]")
+        if start is None:
+            of_scene[name] = value
+        elif not 1 <= int(start[2]) <= len(case.q0):
+            raise UsageError(
+                f"--parameters {one}: the scene has {len(case.q0)} links, counted from 1"
+            )
+        else:
+            starts[start[1]][int(start[2]) - 1] = value
+    return Case(
+        scene=case.scene.with_parameters(of_scene), **starts, t_span=case.t_span, name=case.name,
+        options=case.options,
+    )  # fmt: skip
 
 
 def _with_options(case: Case, given: dict[str, Any]) -> Case:

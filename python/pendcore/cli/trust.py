@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
+from typing import Any
 
 from pendcore import Solution
 from pendcore.cli.arguments import add_case_or_solution, solution_of
@@ -68,19 +70,16 @@ def trust(
         "valid_until": (horizon.valid_until, f"right to {limit:g} rad {horizon.sentence}"),
         "largest_error": (as_json(estimate.largest), str(estimate)),
     }
-    try:
-        growth = solution.lyapunov()
-        found["lyapunov_exponent"] = (as_json(growth.largest), str(growth))
-    except ValueError as refusal:  # dry friction and stops: neighbours do not diverge at a rate
-        found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {_without_name(refusal)}")
-    try:
-        defect = solution.defect()
-        found["defect"] = (as_json(defect.largest), str(defect))
-    except ValueError as refusal:
-        found["defect"] = (None, f"no defect: {_without_name(refusal)}")
+    measures: dict[str, tuple[str, Callable[[], Any]]] = {
+        "lyapunov_exponent": ("Lyapunov exponent", solution.lyapunov),
+        "defect": ("defect", solution.defect),
+    }
+    for key, (noun, measure) in measures.items():
+        try:
+            told = measure()
+        except ValueError as refusal:  # with dry friction and stops, neighbours part at no rate
+            why = str(refusal).removeprefix(f"{measure.__name__}: ")
+            found[key] = (None, f"no {noun}: {why}")
+        else:
+            found[key] = (as_json(told.largest), str(told))
     return found
-
-
-def _without_name(refusal: ValueError) -> str:
-    """Return a complaint without the name of the method that it begins with."""
-    return str(refusal).removeprefix("lyapunov: ").removeprefix("defect: ")

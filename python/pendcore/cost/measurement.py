@@ -269,10 +269,8 @@ class Measurement:
         if self.methods is not None:
             return self.methods
         known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
-        return [name for name in known if self.start.is_supported_by(name, self._first_step(name))]
-
-    def _first_step(self, method: str) -> float | None:
-        return None if has_error_estimate(method) else 1e-3
+        steps = {name: None if has_error_estimate(name) else 1e-3 for name in known}
+        return [name for name, step in steps.items() if self.start.is_supported_by(name, step)]
 
     def _contenders_of(self, method: str) -> Iterator[Contender]:
         if has_error_estimate(method):
