@@ -16,7 +16,6 @@ and what the rounding of states and times to doubles adds.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from pendcore._accuracy.position_error import angles_at
 from pendcore._accuracy.rounding import moved, neighbours
 from pendcore._accuracy.second_runs import aimed
 from pendcore._accuracy.trials import TrialRun, Trials
-from pendcore._accuracy.tuning import EXPENSIVE, FIRST_BY_DEFECT, LEAST_CHANGE, UNSTABLE
+from pendcore._accuracy.tuning import EXPENSIVE, LEAST_CHANGE, UNSTABLE
 from pendcore._run.accuracy import DEFECT
 from pendcore._run.call import Start
 from pendcore._run.error_estimate import ErrorEstimate
@@ -62,8 +61,6 @@ class FromDefect:
     share: float
     errors: tuple[float, float]
     series_are_expensive: bool = False
-    first_aim: ClassVar[float] = FIRST_BY_DEFECT
-    serves_every_trial: ClassVar[bool] = False
 
     def serves(self, start: Start, error: float) -> bool:
         """Whether it is tried for an error of a smooth scene."""

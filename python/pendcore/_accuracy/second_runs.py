@@ -22,7 +22,6 @@ from pendcore._accuracy.tuning import (
     BETTER_STILL,
     CAUTION_IF_TIGHT,
     FARTHER,
-    FIRST,
     LEAST_CHANGE,
     LIKELY,
     NOTHING_IN_COMMON,
@@ -39,8 +38,6 @@ class SecondRuns:
     """The strategy that serves every scene."""
 
     method = ""
-    first_aim = FIRST
-    serves_every_trial = True
 
     def correction(self, start: Start, scale: float) -> None:
         """Its trials are made without."""

@@ -21,6 +21,8 @@ from pendcore._accuracy.tuning import (
     AT_FEW_TIMES,
     FARTHER,
     FEW,
+    FIRST,
+    FIRST_BY_DEFECT,
     HOPELESS,
     IF_DAMPED,
     LARGE_ANGLE,
@@ -96,11 +98,11 @@ def search(runs: Trials) -> Solution | Refusal:
 def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
     """Return what a strategy finds; None if it does not tell how large the error is."""
     runs.is_stiff = any(trial.solution.stats.stiff for trial in runs.trials)
-    if runs.is_stiff and not strategy.serves_every_trial:
+    if runs.is_stiff and strategy.method:
         return None
     latest = _first_trial(runs, strategy)
     while True:
-        if latest.solution.stats.stiff and not strategy.serves_every_trial:
+        if latest.solution.stats.stiff and strategy.method:
             return None
         if latest.solution.success:
             for trial in sorted(runs.trials, key=lambda trial: -trial.scale):
@@ -147,13 +149,13 @@ def _first_trial(runs: Trials, strategy: Strategy) -> TrialRun:
     A trial that is too loose to follow the motion to its end is made again.
     """
     runs.strategy = strategy
-    if runs.trials and strategy.serves_every_trial:
+    if runs.trials and not strategy.method:
         return runs.trials[-1]
     if runs.trials:
         scale = runs.trials[-1].scale
         runs.trials.clear()
     else:
-        scale = _first_scale(runs, strategy.first_aim)
+        scale = _first_scale(runs, FIRST_BY_DEFECT if strategy.method else FIRST)
     trial = runs.trial(scale, runs.method_for(runs.error))
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.t_reached

@@ -70,15 +70,11 @@ class Strategy(Protocol):
 
     @property
     def method(self) -> str:
-        """The method of its trials; empty where the error that is asked for chooses it."""
+        """The method of its trials, none of which is stiff.
 
-    @property
-    def first_aim(self) -> float:
-        """The multiple of the error asked for at which its first trial aims."""
-
-    @property
-    def serves_every_trial(self) -> bool:
-        """Whether it verifies trials of stiff scenes, and those of the strategies before it."""
+        Empty if it serves every trial, those of the strategies before it too; then the error that
+        is asked for chooses the method.
+        """
 
     def correction(self, start: Start, scale: float) -> DefectCorrection | None:
         """Return what is to look on while a trial of a typical error, ``scale``, is made."""

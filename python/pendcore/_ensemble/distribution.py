@@ -48,37 +48,24 @@ class Task:
     block: Block
 
 
-class InMemory:
-    """Arrays in memory that take the results of blocks."""
-
-    def __init__(self, members: Members, request: Request) -> None:
-        variables = request.variables(len(members.scene.links))
-        self.arrays = {one.name: one.empty(members.shape) for one in variables}
-
-    def is_done(self, block: Block) -> bool:
-        """Return whether a block was written: none is, to begin with."""
-        return False
-
-    def require_all(self) -> None:
-        """Raise an error if results were lost: none are."""
-
-    def write(self, block: Block, arrays: Arrays) -> None:
-        """Take the results of a block."""
-        for name, values in arrays.items():
-            self.arrays[name][block] = values
-
-
 def run_blocks(
     members: Members,
     request: Request,
     blocks: Blocks,
-    target: InMemory | Store,
+    store: Store | None,
     executor: Any,
     workers: int,
     time_limit: float,
     report: Report,
 ) -> Outcome:
-    """Run the blocks that are not done: side by side by an executor, or else one by one."""
+    """Run the blocks that are not done: side by side by an executor, or else one by one.
+
+    A store takes their results, or else memory.
+    """
+    kept: dict[str, Any] = {} if store is None else store.arrays
+    if store is None:
+        for one in request.variables(len(members.scene.links)):
+            kept[one.name] = one.empty(members.shape)
     until, done, total = monotonic() + time_limit, 0, members.count
     statistics: Counter[str] = Counter()
     ending, error = "finished", None
@@ -91,7 +78,7 @@ def run_blocks(
 
     def left() -> Iterator[Block]:
         for block in blocks:
-            if target.is_done(block):
+            if store is not None and store.is_done(block):
                 is_run(block)
             else:
                 yield block
@@ -115,29 +102,32 @@ def run_blocks(
     if executor is None:
         results = one_by_one()
     else:
-        store = target.path.resolve() if isinstance(target, Store) else None
+        place = None if store is None else store.place
         tasks = (
-            Task(_core.__version__, members.block(block), request, workers or 1, store, block)
+            Task(_core.__version__, members.block(block), request, workers or 1, place, block)
             for block in left()
         )
-        results = _side_by_side(*_pool(executor), tasks, until, store is not None)
+        results = _side_by_side(*_pool(executor), tasks, until, place is not None)
     try:
         with closing(results):
             for block, arrays, counted in results:
-                if arrays is not None:
-                    target.write(block, arrays)
-                elif isinstance(target, Store):
-                    target.require_there()
+                if store is None:
+                    for name, values in (arrays or {}).items():
+                        kept[name][block] = values
+                elif arrays is None:
+                    store.require_there()
+                else:
+                    store.write(block, arrays)
                 statistics.update(counted)
                 is_run(block)
         if done < total:
             ending = "time_limit"
-        else:
-            target.require_all()
+        elif store is not None:
+            store.require_all()
     except BaseException as stop:  # Ctrl-C, an exception of progress or of a worker, a full disk
         ending, error = "interrupted", _in_words(stop)
     try:
-        return Outcome(target.arrays, ending, dict(statistics), error)
+        return Outcome(kept, ending, dict(statistics), error)
     finally:
         del error  # as above
 

@@ -44,13 +44,10 @@ class Members:
         """The number of members."""
         return int(np.prod(self.shape, dtype=np.int64))
 
-    def values(self, index: Index) -> dict[str, float]:
-        """Return the parameters of a member that vary."""
-        return {name: float(values[index]) for name, values in self.vary.items()}
-
     def scene_of(self, index: Index) -> Any:
         """Return the scene of a member."""
-        return self.scene.with_parameters(self.values(index)) if self.vary else self.scene
+        values = {name: float(varied[index]) for name, varied in self.vary.items()}
+        return self.scene.with_parameters(values) if values else self.scene
 
     def block(self, block: tuple[slice, ...]) -> Members:
         """Return the members of a block, in memory of their own."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pendcore._ensemble.blocks import blocks_of, usual_block
-from pendcore._ensemble.distribution import InMemory, run_blocks
+from pendcore._ensemble.distribution import run_blocks
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
 from pendcore._ensemble.new_store import bytes_of, in_words
@@ -56,8 +56,7 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
                 found = run_blocks(members, request, store.blocks, store, *how)
         elif executor is not None:
             blocks = blocks_of(members.shape, chunk or usual_block(members, request))
-            target = InMemory(members, request)
-            found = run_blocks(members, request, blocks, target, *how)
+            found = run_blocks(members, request, blocks, None, *how)
         else:
             found = run_members(members, request, workers, limit, report)
     finally:
