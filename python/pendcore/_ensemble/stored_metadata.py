@@ -53,8 +53,9 @@ def axes_of(
         pairs = zip(sizes, shape, strict=True)
         fits = all(type(one) is int and 1 <= one <= max(size, 1) for one, size in pairs)
         codecs = {one["name"] for one in told["codecs"]}
-    except (IndexError, KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{where}: is none of an array of this store ({error})") from None
+    except (IndexError, KeyError, TypeError, ValueError):
+        wanted = "shape, chunk_grid, codecs and dimension_names of an array of this store"
+        raise ValueError(f"{where}: must have {wanted}") from None
     if not codecs <= CODECS:
         known = ", ".join(sorted(CODECS))
         raise _not_as_written(where, told, "codecs", f"of {known}: others may run code")

@@ -62,12 +62,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             status = int(args.execute(args))
             sys.stdout.flush()
             return status
-        except UsageError as error:
+        except (UsageError, NotWritten) as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
-            return 2
-        except NotWritten as error:
-            print(f"pendcore {args.command}: {error}", file=sys.stderr)
-            return 1
+            return 2 if isinstance(error, UsageError) else 1
         except KeyboardInterrupt:  # outside the run, which handles its own
             print(f"pendcore {args.command}: interrupted", file=sys.stderr)
             return 1
