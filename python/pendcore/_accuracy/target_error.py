@@ -10,7 +10,7 @@ from __future__ import annotations
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from math import inf
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -41,14 +41,6 @@ from pendcore._run.solution import Solution
 
 FOLLOWED_BADLY = ("step_too_small", "non_finite")
 """The statuses that loose tolerances may cause."""
-
-
-class Refusal(NamedTuple):
-    """Why no run was accepted, the most accurate one, and the least error that is kept."""
-
-    message: str
-    solution: Solution
-    least: float = inf
 
 
 def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
@@ -82,12 +74,15 @@ def run_to_error(start: Start, error: float, options: dict[str, Any]) -> Solutio
         raise
     finally:
         close(report)
-    if isinstance(found, Refusal):
-        raise AccuracyError(*found)
+    if isinstance(found, AccuracyError):
+        try:
+            raise found
+        finally:
+            del found  # its traceback holds this frame: it would wait for the collector
     return found
 
 
-def search(runs: Trials) -> Solution | Refusal:
+def search(runs: Trials) -> Solution | AccuracyError:
     """Return a run that keeps the error, or one that ended early; or why there is none."""
     for strategy in runs.strategies:
         if (found := _accepted(runs, strategy)) is not None:
@@ -95,7 +90,7 @@ def search(runs: Trials) -> Solution | Refusal:
     return _refusal(runs)
 
 
-def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
+def _accepted(runs: Trials, strategy: Strategy) -> Solution | AccuracyError | None:
     """Return what a strategy finds; None if it does not tell how large the error is."""
     runs.is_stiff = any(trial.solution.stats.stiff for trial in runs.trials)
     if runs.is_stiff and strategy.method:
@@ -131,7 +126,7 @@ def _first_scale(runs: Trials, factor: float) -> float:
     return factor * runs.error
 
 
-def _not_finished(runs: Trials, latest: TrialRun) -> Solution | Refusal:
+def _not_finished(runs: Trials, latest: TrialRun) -> Solution | AccuracyError:
     """Return a trial that did not get to its end, or why that ends the search."""
     status, is_first = latest.solution.status, latest in runs.trials[:1]
     is_end = latest in runs.trials and (is_first or status != "max_steps")
@@ -186,7 +181,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> Solution:
     return solution
 
 
-def _refusal(runs: Trials, why: str = "") -> Refusal:
+def _refusal(runs: Trials, why: str = "") -> AccuracyError:
     """Say which error was reached, and why not a smaller one."""
     asked, verify = f"error = {runs.error:g}", runs.strategy.verify
     complete = [trial for trial in runs.trials if trial.solution.success] or runs.trials
@@ -198,7 +193,7 @@ def _refusal(runs: Trials, why: str = "") -> Refusal:
     why = why or _in_the_way(runs, last, error)
     if error is None or not error.is_complete:
         runs.concluded(last.solution, "refused", None, why)
-        return Refusal(f"{asked}: {last.text} could not be verified: {why}", last.solution)
+        return AccuracyError(f"{asked}: {last.text} could not be verified: {why}", last.solution)
     runs.refused = runs.concluded(last.solution, "refused", error)
     least = inf if error.is_lost else _least_accepted(runs, error.largest)
     runs.concluded(last.solution, "refused", error)  # with all that was paid
@@ -215,7 +210,7 @@ def _refusal(runs: Trials, why: str = "") -> Refusal:
         why += f"; the error is kept until t = {_rounded(until, digits, not_past):f} s"
         remedies.append("end t_span well before that")
     message = ": ".join((asked, "not reached", reached, why, ", or ".join(remedies)))
-    return Refusal(message.removesuffix(": "), last.solution, least)
+    return AccuracyError(message.removesuffix(": "), last.solution, least)
 
 
 def _least_accepted(runs: Trials, least: float) -> float:
@@ -235,7 +230,7 @@ def _least_accepted(runs: Trials, least: float) -> float:
             found = search(again)
         finally:
             runs.add(again)
-        if not isinstance(found, Refusal):
+        if not isinstance(found, AccuracyError):
             told = found.accuracy
             return least if told is not None and told.reached else inf
         least = found.least
