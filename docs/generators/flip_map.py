@@ -24,7 +24,7 @@ import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
 from pendcore.cli.map.forbidden import is_forbidden
-from pendcore.cost.machine import processor
+from pendcore.cost.measurement import processor
 from scipy.interpolate import CubicHermiteSpline
 
 ROOT = Path(__file__).parents[2]

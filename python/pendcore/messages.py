@@ -22,6 +22,7 @@ from pendcore._messages.arguments import (
     whole_number,
 )
 from pendcore._messages.handed_over import forget_inner_runs, hand_over
+from pendcore._messages.json_values import as_json
 from pendcore._messages.progress import Progress, callback, close, reporting
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
@@ -29,6 +30,7 @@ from pendcore._scene.scene import require_scene
 __all__ = [
     "PendcoreWarning",
     "Progress",
+    "as_json",
     "callback",
     "close",
     "did_you_mean",

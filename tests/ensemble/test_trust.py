@@ -113,11 +113,13 @@ def test_a_map_is_refined_where_neighbours_differ():
         asked.append(int(wanted.sum()))
         x, y = ((np.arange(size) + 0.5) / size - 0.5 for size in level)
         i, k = np.nonzero(wanted)
-        return (np.hypot(x[i], y[k]) < 0.3) * 1.0 + 1.0
+        inside = np.hypot(x[i], y[k]) < 0.3
+        return inside + 1.0, inside
 
-    *_, (values, computed) = refined((256, 256), 4, disc)
+    *_, (values, resolved, computed) = refined((256, 256), 4, disc)
     x = (np.arange(256) + 0.5) / 256 - 0.5
     assert np.array_equal(values, (np.hypot(x[:, None], x) < 0.3) + 1.0)
+    assert np.array_equal(resolved, values > 1.0)
     assert sum(asked) < 0.2 * values.size
     assert asked[-1] == computed.sum()
     with pytest.raises(ValueError, match="count = 100: must be a multiple of 8"):

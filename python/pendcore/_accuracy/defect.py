@@ -73,9 +73,6 @@ class Defect:
         return int(self.torque.max(axis=0, initial=0.0).argmax()) + 1
 
     def __repr__(self) -> str:
-        return str(self)
-
-    def __str__(self) -> str:
         at_most = "at most " if self.is_bound else ""
         share = f", {self.share:.1e} of m g L" if self.weight else ""
         torque = f"{at_most}{self.largest:.1e} N m more at joint {self.joint}{share}"

@@ -53,8 +53,7 @@ def load(path: str | os.PathLike[str]) -> Solution | Ensemble:
     if Path(path).is_dir():
         return _from_store(Path(path))
     if is_ensemble(path):
-        saved = load_ensemble(path)
-        return Ensemble(saved.members, saved.request, saved.arrays, saved.ending, saved.statistics)
+        return load_ensemble(path)
     return archive.load(path)
 
 

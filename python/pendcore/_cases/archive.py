@@ -18,7 +18,7 @@ from typing import IO, Any, BinaryIO
 import numpy as np
 
 from pendcore import _core
-from pendcore._cases.case import Case
+from pendcore._cases.case import Case, refuse_functions
 from pendcore._cases.case_file import case_from_text
 from pendcore._cases.npz import Entries, entries_of
 from pendcore._cases.whole_file import whole_file
@@ -27,11 +27,9 @@ from pendcore._messages.warning import silence
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
 from pendcore.effects import KINDS, made
-from pendcore.events import Function
 
 _RUN, _ERROR = "run.", "error."
 _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol.y)"
@@ -39,12 +37,7 @@ _KEEP = ": keep the numbers, sol.to_pandas() or numpy.savez(path, t=sol.t, y=sol
 
 def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
     """Write a solution to the file ``path``, under just that name, and not before it is whole."""
-    for effect in solution.scene.effects:
-        if isinstance(effect, OwnEffect):
-            raise effect.cannot_be("saved", _KEEP)
-    for event in solution.events_asked_for():
-        if isinstance(event, Function):
-            raise event.cannot_be("saved", _KEEP)
+    refuse_functions(solution.scene, solution.events_asked_for(), "saved", _KEEP)
     entries: dict[str, Any] = {
         "t": solution.t,
         "q": solution.q,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from math import pi
 from types import MappingProxyType
 from typing import Any, Self
@@ -12,9 +13,9 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._messages.arguments import finite_array, text, vector
+from pendcore._messages.arguments import numbers, text, vector
 from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import Effect, OwnEffect, Part
+from pendcore._scene.effect_class import OwnEffect, Part
 from pendcore._scene.scene import Scene
 from pendcore.events import Event, Function, events_asked_for
 from pendcore.options import RUN_DEFAULTS, OnFailure
@@ -81,7 +82,7 @@ class Case:
         object.__setattr__(self, "scene", scene)
         object.__setattr__(self, "q0", vector("q0", q0, n, "rad"))
         object.__setattr__(self, "qd0", vector("qd0", qd0, n, "rad/s"))
-        object.__setattr__(self, "t_span", _pair("t_span", t_span, "s"))
+        object.__setattr__(self, "t_span", numbers("t_span", t_span, "s", 2))
         object.__setattr__(self, "name", text("name", name))
         object.__setattr__(self, "options", MappingProxyType(given))
 
@@ -169,11 +170,12 @@ class Case:
         t_start, t_end = self.t_span
         options = dict(self.options)
         events = options.pop("events", ())
+        refuse_functions(self.scene, events, "written as TOML")
         tables: list[tuple[str, dict[str, Any]]] = [
             ("", {"name": self.name, "gravity": self.scene.gravity}),
             *(("[[link]]\n", link.particulars()) for link in self.scene.links),
-            *(("[[effect]]\n", _effect_table(effect)) for effect in self.scene.effects),
-            *(("[[event]]\n", _event_table(event)) for event in events),
+            *(("[[effect]]\n", {"kind": x.kind, **x.particulars()}) for x in self.scene.effects),
+            *(("[[event]]\n", {"kind": x.kind, **x.particulars()}) for x in events),
             ("[start]\n", {"q": self.q0, "qd": self.qd0}),
             ("[run]\n", {"t_start": t_start, "t_end": t_end, **options}),
         ]
@@ -191,24 +193,22 @@ class Case:
 
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping does not pickle, so the case is made anew.
-        return _case, (type(self), self._values())
+        return partial(type(self), **self._values()), ()
 
 
 def has_own_functions(solution: Solution) -> bool:
     """Whether an effect or an event is a function, which no file can hold."""
-    acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
-    return acting or any(isinstance(event, Function) for event in solution.events_asked_for())
+    return bool(_own_functions(solution.scene, solution.events_asked_for()))
 
 
-def _case(cls: type[Case], values: dict[str, Any]) -> Case:
-    return cls(**values)
+def refuse_functions(scene: Scene, events: Iterable[Event], done: str, remedy: str = "") -> None:
+    """Raise a TypeError for an effect or an event that is a function: it cannot be ``done``."""
+    for one in _own_functions(scene, events):
+        raise one.cannot_be(done, remedy)
 
 
-def _pair(name: str, value: npt.ArrayLike, unit: str) -> tuple[float, float]:
-    array = finite_array(name, value, unit)
-    if array.shape != (2,):
-        raise ValueError(f"{name}: shape {array.shape}: must be (2,) ({unit})")
-    return float(array[0]), float(array[1])
+def _own_functions(scene: Scene, events: Iterable[Event]) -> list[OwnEffect | Function]:
+    return [one for one in (*scene.effects, *events) if isinstance(one, OwnEffect | Function)]
 
 
 def _plain(value: Any) -> Any:
@@ -220,18 +220,6 @@ def _plain(value: Any) -> Any:
     if {*map(type, value)} <= {float, int}:  # as of a million times
         return tuple(value)
     return tuple(map(_plain, value))
-
-
-def _effect_table(effect: Effect) -> dict[str, Any]:
-    if isinstance(effect, OwnEffect):
-        raise effect.cannot_be("written as TOML")
-    return {"kind": effect.kind, **effect.particulars()}
-
-
-def _event_table(event: Event) -> dict[str, Any]:
-    if isinstance(event, Function):
-        raise event.cannot_be("written as TOML")
-    return {"kind": event.kind, **event.particulars()}
 
 
 def _lines(table: Mapping[str, Any]) -> Iterator[str]:

@@ -1,37 +1,10 @@
-"""A case from TOML; docs/how_to/case_files.md is the reference of its keys.
-
-A case::
-
-    name = "double pendulum, section 2.1"
-    gravity = 9.807                 # m/s^2
-    [[link]]                        # a table per link, from the pivot outwards
-    mass = 1.0                      # kg
-    length = 1.0                    # m; center and inertia as in pendcore.Link
-    [[link]]
-    mass = 1.0
-    length = 1.0
-    [[effect]]                      # a table per effect; none is needed
-    kind = "viscous_joint"          # any of pendcore.effects.kinds(), and its parameters
-    joint = 1
-    damping = 0.1                   # N m s/rad
-    [[event]]                       # a table per event to look for; none is needed
-    kind = "rate_zero"              # any of pendcore.events but Function, and its parameters
-    joint = 2
-    [start]
-    q = [0.7853981633974483, 1.0471975511965976]    # rad; or q_deg = [45, 60]
-    qd = [0.0, 0.0]                 # rad/s; 0 if left out; one number holds for every link
-    [run]
-    t_start = 0.0                   # s; 0 if left out
-    t_end = 5.0                     # s
-    method = "dop853"               # this and any other keyword of pendcore.simulate
-"""
+"""A case from TOML: docs/how_to/case_files.md has its keys, examples/03_case_file.toml is one."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
-from difflib import get_close_matches
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -40,7 +13,7 @@ import numpy as np
 
 from pendcore._cases.case import Case
 from pendcore._cases.toml_text import Place, TomlText
-from pendcore._messages.arguments import vector
+from pendcore._messages.arguments import did_you_mean, vector
 from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
@@ -212,15 +185,12 @@ def _kind(
 
 def _remedy(noun: str, kind: object, keys: Iterable[str], kinds: Collection[str]) -> str:
     """Return what to write for a kind that cannot stand in a file."""
-    known = ", ".join(keys)
     if not isinstance(kind, str):
-        return f"must be one of {known}"
+        return f"must be one of {', '.join(keys)}"
     if kind in kinds:
         where = "to the scene" if noun == "effect" else "to events"
         return f"is a function, which a file cannot hold: add it {where} in Python"
-    near = get_close_matches(kind, keys, n=1, cutoff=0.5)
-    remedy = f"did you mean {near[0]!r}?" if near else f"known are {known}"
-    return f"is no {noun}: {remedy}"
+    return f"is no {noun}: {did_you_mean(kind, keys)}"
 
 
 def _start(text: TomlText, n: int) -> tuple[Sequence[float], Sequence[float] | float]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from difflib import get_close_matches
 from typing import Any, TypeAlias
+
+from pendcore._messages.arguments import did_you_mean
 
 Place: TypeAlias = tuple[str | int, ...]
 """Way to a key: ``("link", 1, "mass")`` is the mass in the second ``[[link]]``."""
@@ -87,12 +88,9 @@ class TomlText:
             if key in here:
                 continue
             home = next((other for other, keys in known.items() if key in keys), None)
+            remedy = did_you_mean(key, here)
             if home is not None:
                 remedy = f"it belongs {f'in [{home}]' if home else 'above all tables'}"
-            elif near := get_close_matches(key, here, n=1, cutoff=0.5):
-                remedy = f"did you mean {near[0]!r}?"
-            else:
-                remedy = f"known are {', '.join(here)}"
             where = f" in [{kind}]" if kind else ""
             raise self.error((*place, key), f"unknown key {key!r}{where}: {remedy}")
 
@@ -114,30 +112,22 @@ class TomlText:
 
     def number(self, place: Place) -> float:
         """Return the number at a place."""
-        value = self.value(place)
-        if not _is_number(value):
-            raise self.error(place, f"{place[-1]} = {value!r}: must be a number")
-        return self._float(place, value)
+        return self._floats(place, [self.value(place)], "must be a number")[0]
 
     def numbers(self, place: Place) -> float | list[float]:
         """Return the number, or the list of numbers, at a place."""
-        value = self.value(place)
-        if _is_number(value):
-            return self._float(place, value)
-        if not isinstance(value, list) or not all(map(_is_number, value)):
-            wanted = "must be a number or a list of numbers"
-            raise self.error(place, f"{place[-1]} = {value!r}: {wanted}")
-        return [self._float(place, x) for x in value]
+        value, wanted = self.value(place), "must be a number or a list of numbers"
+        if isinstance(value, list):
+            return self._floats(place, value, wanted)
+        return self._floats(place, [value], wanted)[0]
 
-    def _float(self, place: Place, value: float) -> float:
+    def _floats(self, place: Place, given: list[Any], wanted: str) -> list[float]:
+        if not all(isinstance(x, int | float) and not isinstance(x, bool) for x in given):
+            raise self.error(place, f"{place[-1]} = {self.value(place)!r}: {wanted}")
         try:
-            return float(value)
+            return [float(x) for x in given]
         except OverflowError:
             raise self.error(place, f"{place[-1]}: is too large: must be below 1.8e308") from None
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _lines_of_keys(hushed: list[str]) -> Iterator[tuple[Place, int]]:

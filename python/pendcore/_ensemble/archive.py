@@ -11,9 +11,9 @@ import numpy as np
 
 from pendcore._cases.npz import Entries, entries_of
 from pendcore._cases.whole_file import whole_file
-from pendcore._ensemble.about import SHAPE, VARY, about, read_about, read_sizes
-from pendcore._ensemble.coordinates import coordinates, members_from
+from pendcore._ensemble.about import SHAPE, VARY, about, read_about, read_sizes, require
 from pendcore._ensemble.ensemble import Ensemble
+from pendcore._ensemble.members import coordinates, members_from
 from pendcore._ensemble.run import SUMMED
 
 ENTRY = "ensemble"
@@ -63,14 +63,15 @@ def _loaded(entries: Entries) -> Ensemble:
         raise ValueError(f"{ENTRY}: must be a table")
     shape = read_sizes(told, SHAPE, 0)
     scene, request = read_about(told, entries.get("time"))
-    ending, statistics, axes = (told.get(name) for name in ("ending", "statistics", "axes"))
-    if ending not in ("finished", "time_limit", "interrupted"):
-        raise ValueError(f"ending = {ending!r}: must be finished, time_limit or interrupted")
-    if not isinstance(statistics, dict) or statistics.keys() not in ({*()}, {*SUMMED}):
-        raise ValueError(f"statistics = {statistics!r}: must have {', '.join(SUMMED)}, or nothing")
+    endings = ("finished", "time_limit", "interrupted")
+    require(told, "ending", told.get("ending") in endings, f"one of {', '.join(endings)}")
+    statistics: Any = told.get("statistics")
+    axes: Any = told.get("axes")
+    keys = {*statistics} if isinstance(statistics, dict) else {""}
+    require(told, "statistics", keys in ({*()}, {*SUMMED}), f"of {', '.join(SUMMED)}, or nothing")
     names = ["q0", "qd0", *told[VARY]]
-    if not isinstance(axes, dict) or not all(isinstance(axes.get(name), list) for name in names):
-        raise ValueError(f"axes = {axes!r}: must have lists of axes of {', '.join(names)}")
+    has_all = isinstance(axes, dict) and all(isinstance(axes.get(name), list) for name in names)
+    require(told, "axes", has_all, f"lists of axes of {', '.join(names)}")
     starts = {name: (tuple(axes[name]), entries[name]) for name in names}
     for name, (_, values) in starts.items():
         if values.dtype != np.float64:
@@ -81,4 +82,4 @@ def _loaded(entries: Entries) -> Ensemble:
         found = arrays[one.name] = entries[one.name]
         if found.shape != (*shape, *one.shape) or found.dtype != one.dtype:
             raise ValueError(f"{one.name} has another shape or type than that of the members")
-    return Ensemble(members, request, arrays, ending, statistics)
+    return Ensemble(members, request, arrays, told["ending"], statistics)

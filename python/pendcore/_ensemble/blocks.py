@@ -49,9 +49,6 @@ class Blocks:
         """The number of blocks along each axis."""
         return tuple(-(-a // b) for a, b in zip(self.shape, self.block_shape, strict=True))
 
-    def __len__(self) -> int:
-        return prod(self.grid)
-
     def __iter__(self) -> Iterator[Block]:
         for place in np.ndindex(self.grid):
             edges = zip(place, self.block_shape, self.shape, strict=True)

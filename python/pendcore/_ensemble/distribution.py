@@ -7,9 +7,9 @@ store themselves, so that results never pass through this process.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from math import inf
 from os import cpu_count
@@ -25,6 +25,8 @@ from pendcore._ensemble.run import Arrays, Outcome, run_members
 from pendcore._ensemble.store import Store, write_block
 
 Report = Callable[[float], object] | None
+Result = tuple[Block, Arrays | None, dict[str, Any]]
+"""A block, its arrays unless they are in a store, and its statistics."""
 
 AHEAD = 4
 """The number of tasks that wait for each processor: enough that no worker has nothing to do."""
@@ -46,130 +48,91 @@ class Task:
     block: Block
 
 
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What bounds the whole."""
-
-    workers: int
-    time_limit: float
-    report: Report
-
-
-class InMemory:
-    """Arrays in memory that take the results of blocks."""
-
-    def __init__(self, members: Members, request: Request) -> None:
-        variables = request.variables(len(members.scene.links))
-        self.arrays = {one.name: one.empty(members.shape) for one in variables}
-
-    def is_done(self, block: Block) -> bool:
-        """Return whether a block was written: none is, to begin with."""
-        return False
-
-    def require_all(self) -> None:
-        """Raise an error if results were lost: none are."""
-
-    def write(self, block: Block, arrays: Arrays) -> None:
-        """Take the results of a block."""
-        for name, values in arrays.items():
-            self.arrays[name][block] = values
-
-
 def run_blocks(
     members: Members,
     request: Request,
     blocks: Blocks,
-    target: InMemory | Store,
-    limits: Limits,
-    executor: Any = None,
-) -> Outcome:
-    """Run the blocks that are not done: by the workers of an executor, or else by threads."""
-    if executor is not None:
-        return _run_by(executor, members, request, blocks, target, limits)
-    return _run_here(members, request, blocks, target, limits)
-
-
-def _run_here(
-    members: Members, request: Request, blocks: Blocks, target: InMemory | Store, limits: Limits
-) -> Outcome:
-    """Run one block after the other."""
-    until, done, total = monotonic() + limits.time_limit, 0, max(members.count, 1)
-    statistics: Counter[str] = Counter()
-    try:
-        for block in blocks:
-            size = size_of(block)
-            if not target.is_done(block):
-                left = until - monotonic()
-                if left <= 0:  # threads may run a whole block before they look at a limit of 0
-                    return Outcome(target.arrays, "time_limit", dict(statistics), None)
-                report = _part(limits.report, done / total, size / total)
-                found = run_members(members.block(block), request, limits.workers, left, report)
-                if found.ending != "finished" or found.error is not None:
-                    try:
-                        return found._replace(arrays=target.arrays, statistics=dict(statistics))
-                    finally:
-                        del found  # its exception may hold this frame, and wait for the collector
-                target.write(block, found.arrays)
-                statistics.update(found.statistics)
-            done += size
-            if limits.report is not None:
-                limits.report(done / total)
-        target.require_all()
-    except BaseException as stop:  # Ctrl-C between blocks, an exception of progress, a full disk
-        return Outcome(target.arrays, "interrupted", dict(statistics), stop)
-    return Outcome(target.arrays, "finished", dict(statistics), None)
-
-
-def _run_by(
+    store: Store | None,
     executor: Any,
-    members: Members,
-    request: Request,
-    blocks: Blocks,
-    target: InMemory | Store,
-    limits: Limits,
+    workers: int,
+    time_limit: float,
+    report: Report,
 ) -> Outcome:
-    """Run blocks side by side."""
-    store = target.path.resolve() if isinstance(target, Store) else None
-    left = (block for block in blocks if not target.is_done(block))
-    tasks = (
-        Task(_core.__version__, members.block(block), request, limits.workers or 1, store, block)
-        for block in left
-    )
-    until, done, total = monotonic() + limits.time_limit, 0, max(members.count, 1)
+    """Run the blocks that are not done: side by side by an executor, or else one by one.
+
+    A store takes their results, or else memory.
+    """
+    kept: dict[str, Any] = {} if store is None else store.arrays
+    if store is None:
+        for one in request.variables(len(members.scene.links)):
+            kept[one.name] = one.empty(members.shape)
+    until, done, total = monotonic() + time_limit, 0, members.count
     statistics: Counter[str] = Counter()
-    pool, processors = _pool(executor)
-    running: set[Future[Any]] = set()
     ending, error = "finished", None
+
+    def is_run(block: Block) -> None:
+        nonlocal done
+        done += size_of(block)
+        if report is not None:
+            report(done / total)
+
+    def left() -> Iterator[Block]:
+        for block in blocks:
+            if store is not None and store.is_done(block):
+                is_run(block)
+            else:
+                yield block
+
+    def one_by_one() -> Generator[Result]:
+        for block in left():
+            seconds = until - monotonic()
+            if seconds <= 0:  # threads may run a whole block before they look at a limit of 0
+                return
+            part = _part(report, done / total, size_of(block) / total)
+            found = run_members(members.block(block), request, workers, seconds, part)
+            if found.error is not None:
+                try:
+                    raise found.error
+                finally:
+                    del found  # its exception holds this frame, and would wait for the collector
+            if found.ending != "finished":
+                return
+            yield block, found.arrays, found.statistics
+
+    if executor is None:
+        results = one_by_one()
+    else:
+        place = None if store is None else store.place
+        tasks = (
+            Task(_core.__version__, members.block(block), request, workers or 1, place, block)
+            for block in left()
+        )
+        results = _side_by_side(*_pool(executor), tasks, until, place is not None)
     try:
-        results = _results(pool, tasks, AHEAD * processors, running, lambda: monotonic() < until)
-        for block, arrays, counted in results:
-            if arrays is not None:
-                target.write(block, arrays)
-            elif isinstance(target, Store):
-                target.require_there()
-            statistics.update(counted)
-            done += size_of(block)
-            if limits.report is not None:
-                limits.report(done / total)
-        if monotonic() >= until and done < total:
+        with closing(results):
+            for block, arrays, counted in results:
+                if store is None:
+                    for name, values in (arrays or {}).items():
+                        kept[name][block] = values
+                elif arrays is None:
+                    store.require_there()
+                else:
+                    store.write(block, arrays)
+                statistics.update(counted)
+                is_run(block)
+        if done < total:
             ending = "time_limit"
-        else:
-            target.require_all()
-    except BaseException as stop:  # Ctrl-C, an exception of progress, or what a worker raised
+        elif store is not None:
+            store.require_all()
+    except BaseException as stop:  # Ctrl-C, an exception of progress or of a worker, a full disk
         ending, error = "interrupted", _in_words(stop)
-    finally:
-        begun = [one for one in running if not one.cancel()]
-        if len(begun) < len(running):
-            _let_see_cancelled(pool)
-        if store is not None:  # these still write into it, so it must be held until they have
-            wait(begun, PATIENCE)
     try:
-        return Outcome(target.arrays, ending, dict(statistics), error)
+        return Outcome(kept, ending, dict(statistics), error)
     finally:
         del error  # as above
 
 
-def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
+def run_task(task: Task) -> Result:
     """Run a block in the process of a worker."""
     if task.version != _core.__version__:
         raise RuntimeError(
@@ -195,23 +158,26 @@ def run_task(task: Task) -> tuple[Block, Arrays | None, dict[str, Any]]:
     return task.block, None, found.statistics
 
 
-def _results(
-    pool: Executor,
-    tasks: Iterable[Task],
-    most: int,
-    running: set[Future[Any]],
-    goes_on: Callable[[], bool],
-) -> Iterator[Any]:
-    """Yield results as they come, with at most so many tasks on their way."""
-    left = iter(tasks)
-    while goes_on():
-        while len(running) < most and (task := next(left, None)) is not None:
-            running.add(pool.submit(run_task, task))
-        if not running:
-            return
-        for one in wait(running, LOOK, FIRST_COMPLETED).done:
-            running.discard(one)
-            yield one.result()
+def _side_by_side(
+    pool: Executor, processors: int, tasks: Iterator[Task], until: float, in_store: bool
+) -> Generator[Result]:
+    """Yield results as they come; when this ends, no worker begins another task."""
+    running: set[Future[Any]] = set()
+    try:
+        while monotonic() < until:
+            while len(running) < AHEAD * processors and (task := next(tasks, None)) is not None:
+                running.add(pool.submit(run_task, task))
+            if not running:
+                return
+            for one in wait(running, LOOK, FIRST_COMPLETED).done:
+                running.discard(one)
+                yield one.result()
+    finally:
+        begun = [one for one in running if not one.cancel()]
+        if len(begun) < len(running):
+            _let_see_cancelled(pool)
+        if in_store:  # these still write into it, so it must be held until they have
+            wait(begun, PATIENCE)
 
 
 def _let_see_cancelled(pool: Executor) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from operator import index as whole
 from typing import TYPE_CHECKING, Any
 
@@ -11,17 +12,20 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._ensemble.members import Members
+from pendcore._ensemble.members import Members, coordinates, member_axes
 from pendcore._ensemble.request import NOT_RUN, Request
-from pendcore._ensemble.states import Quantity, quantity_of_states
 from pendcore._messages.arguments import Floats
 from pendcore._messages.html import table
 from pendcore._messages.progress import Progress
+from pendcore._messages.warning import silence
 from pendcore._run.energy import Energy
 from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Quantity = Callable[[_core.Scene, Floats, Floats, Floats], Floats]
+"""A quantity of k states of one scene, (k, ...), from times (k,), angles and rates (k, n)."""
 
 
 class Ensemble:
@@ -144,7 +148,27 @@ class Ensemble:
         return self._of_states(lambda scene, t, q, qd: scene.positions(t, q))
 
     def _of_states(self, quantity: Quantity) -> Floats:
-        return quantity_of_states(quantity, self.members, self.t, self.q, self.qd)
+        """Return a quantity of every state that was kept; NaN where a member was refused."""
+        members, q, qd = self.members, self.q, self.qd
+        axes, n = q.shape[:-1], q.shape[-1]
+        times = np.broadcast_to(self.t, axes)
+
+        def computed(scene: _core.Scene, t: Floats, angles: Floats, rates: Floats) -> Floats:
+            found = quantity(scene, t.reshape(-1), angles.reshape(-1, n), rates.reshape(-1, n))
+            return found.reshape(*t.shape, *found.shape[1:])
+
+        if not members.vary:
+            values = computed(members.scene._compiled, times, q, qd)
+        else:
+            one = computed(members.scene._compiled, np.zeros(1), np.zeros((1, n)), np.zeros((1, n)))
+            values = np.full((*axes, *one.shape[1:]), np.nan)
+            with silence():  # of implausible parameters
+                for place in np.ndindex(members.shape):
+                    with suppress(ValueError):  # it was refused
+                        scene = members.scene_of(place)
+                        values[place] = computed(scene._compiled, times[place], q[place], qd[place])
+        values[np.isnan(q).any(axis=-1)] = np.nan  # positions() has a pivot even without a state
+        return values
 
     def counts(self) -> dict[str, int]:
         """Return how many members have each status that occurs.
@@ -375,9 +399,24 @@ class Ensemble:
         >>> found.to_xarray().sizes["member_0"]
         2
         """
-        from pendcore._ensemble.export import to_xarray
-
-        return to_xarray(self)
+        try:
+            import xarray as xr
+        except ImportError:
+            raise ImportError("to_xarray() needs xarray: pip install xarray") from None
+        axes, request = member_axes(self.shape), self.request
+        data: dict[str, Any] = {}
+        coords: dict[str, Any] = {
+            x.name: (x.axes, x.values, {"units": x.unit}) for x in coordinates(self.members)
+        }
+        for one in request.variables(len(self.members.scene.links)):
+            values = self.status if one.name == "status" else self._read(one.name)
+            data[one.name] = ([*axes, *one.labels], values, {"units": one.unit} if one.unit else {})
+            coords |= {axis: list(labels) for axis, labels in one.labels.items()}
+        if request.t_eval is not None:
+            coords["time"] = ("time", request.t_eval, {"units": "s"})
+        told = {"scene": repr(self.members.scene), "t_span": list(request.t_span),
+                "pendcore": _core.__version__}  # fmt: skip
+        return xr.Dataset(data, coords=coords, attrs=told)
 
     def __len__(self) -> int:
         return self.members.count

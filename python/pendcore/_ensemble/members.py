@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from pendcore import _core
 from pendcore._messages.arguments import Floats, real_array
 from pendcore._scene.scene import Scene, check_parameter_names
 
@@ -42,13 +43,10 @@ class Members:
         """The number of members."""
         return int(np.prod(self.shape, dtype=np.int64))
 
-    def values(self, index: Index) -> dict[str, float]:
-        """Return the parameters of a member that vary."""
-        return {name: float(values[index]) for name, values in self.vary.items()}
-
     def scene_of(self, index: Index) -> Any:
         """Return the scene of a member."""
-        return self.scene.with_parameters(self.values(index)) if self.vary else self.scene
+        values = {name: float(varied[index]) for name, varied in self.vary.items()}
+        return self.scene.with_parameters(values) if values else self.scene
 
     def block(self, block: tuple[slice, ...]) -> Members:
         """Return the members of a block, in memory of their own."""
@@ -127,3 +125,55 @@ def _parameters(scene: Scene, vary: Mapping[str, npt.ArrayLike] | None) -> dict[
         )
     check_parameter_names(scene._compiled, vary)
     return {name: real_array(f'vary["{name}"]', value, "") for name, value in vary.items()}
+
+
+class Coordinate(NamedTuple):
+    """Values that tell members apart, without the axes along which they were broadcast."""
+
+    name: str
+    axes: tuple[str, ...]
+    values: Floats
+    unit: str
+
+
+def member_axes(shape: Index) -> list[str]:
+    """Return the names of the axes of an ensemble."""
+    return [f"member_{k}" for k in range(len(shape))]
+
+
+def coordinates(members: Members) -> list[Coordinate]:
+    """Return the coordinates of the members: q0, qd0, and what varies."""
+    units = {name: unit for name, unit, _ in _core.parameters(members.scene._compiled)}
+    axes = member_axes(members.shape)
+    found = [
+        Coordinate("q0", *_needed([*axes, "link"], members.q0), "rad"),
+        Coordinate("qd0", *_needed([*axes, "link"], members.qd0), "rad/s"),
+    ]
+    for name, values in members.vary.items():
+        found.append(Coordinate(name, *_needed(axes, values), units[name]))
+    return found
+
+
+def members_from(
+    scene: Scene, shape: Index, found: Mapping[str, tuple[Sequence[str], Floats]]
+) -> Members:
+    """Return the members of a scene that have these coordinates: name to axes and values."""
+    axes, n = member_axes(shape), len(scene.links)
+    lengths = dict(zip(axes, shape, strict=True)) | {"link": n}
+
+    def whole(name: str) -> Floats:
+        own, values = found[name]
+        all_axes = [*axes, "link"] if name in ("q0", "qd0") else axes
+        index = tuple(slice(None) if axis in own else np.newaxis for axis in all_axes)
+        return np.broadcast_to(values[index], tuple(lengths[axis] for axis in all_axes))
+
+    vary = {name: whole(name) for name in found if name not in ("q0", "qd0")}
+    return Members(scene, shape, whole("q0"), whole("qd0"), vary)
+
+
+def _needed(axes: list[str], values: Floats) -> tuple[tuple[str, ...], Floats]:
+    """Return the axes that were not broadcast, and the values along them."""
+    is_empty = 0 in values.shape
+    own = [k for k, step in enumerate(values.strides) if step != 0 or is_empty]
+    index = tuple(slice(None) if k in own else 0 for k in range(values.ndim))
+    return tuple(axes[k] for k in own), values[index]

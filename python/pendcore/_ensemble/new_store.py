@@ -15,11 +15,10 @@ import numpy as np
 
 from pendcore import _core
 from pendcore._ensemble.about import BLOCK, SHAPE, about
-from pendcore._ensemble.blocks import Blocks, blocks_of, require_few_blocks, usual_block
-from pendcore._ensemble.coordinates import coordinates, member_axes
-from pendcore._ensemble.members import Members
+from pendcore._ensemble.blocks import blocks_of, require_few_blocks, usual_block
+from pendcore._ensemble.members import Members, coordinates, member_axes
 from pendcore._ensemble.one_writer import other_writer
-from pendcore._ensemble.request import Request, Variable
+from pendcore._ensemble.request import Request
 
 if TYPE_CHECKING:
     import zarr
@@ -79,7 +78,14 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
             for axis, values in labels.items():
                 _put(group, axis, np.asarray(values), (axis,), "s" if axis == "time" else "")
             for one in variables:
-                _create_array(group, one, axes, members.shape, blocks)
+                sizes = tuple(max(size, 1) for size in (*blocks.block_shape, *one.shape))
+                array = _new_array(
+                    group, one.name, (*members.shape, *one.shape), np.dtype(one.dtype), one.fill,
+                    (*axes, *one.labels), one.unit, sizes,
+                )  # fmt: skip
+                if one.name == "status":  # as the CF conventions have it
+                    flags = {"flag_values": list(range(len(_core.member_statuses)))}
+                    array.attrs.update(flags | {"flag_meanings": " ".join(_core.member_statuses)})
             own = {"coordinates": " ".join(one.name for one in starts)}  # as xarray reads them
             group.attrs.update(own | told | {SHAPE: members.shape, BLOCK: blocks.block_shape})
             with warnings.catch_warnings():  # readers of the bare format pass over what it adds
@@ -108,43 +114,30 @@ def zarr_module() -> Any:
     return zarr
 
 
-def _compressor() -> Any:
-    """Return the compressor of all arrays, which knows a chunk that a disk has changed."""
-    return zarr_module().codecs.ZstdCodec(checksum=True)
-
-
 def _put(group: zarr.Group, name: str, values: Any, axes: tuple[str, ...], unit: str) -> None:
-    attributes = {"units": unit} if unit else {}
-    if values.dtype.kind == "U":  # of a fixed length, texts have no specification in Zarr 3
-        array: Any = group.create_array(
-            name, shape=values.shape, dtype="string", dimension_names=axes, attributes=attributes,
-            compressors=_compressor(),
-        )  # fmt: skip
-        array[...] = values
-    else:
-        group.create_array(
-            name, data=values, dimension_names=axes, attributes=attributes,
-            compressors=_compressor(), fill_value=np.nan if values.dtype.kind == "f" else 0,
-        )  # fmt: skip
+    """Write an array that is whole."""
+    fill = {"U": "", "f": np.nan}.get(values.dtype.kind, 0)
+    # Zarr 3 has no specification of texts of a fixed length.
+    dtype = "string" if values.dtype.kind == "U" else values.dtype
+    _new_array(group, name, values.shape, dtype, fill, axes, unit)[...] = values
 
 
-def _create_array(
-    group: zarr.Group, one: Variable, axes: list[str], shape: tuple[int, ...], blocks: Blocks
-) -> None:
-    attributes: dict[str, Any] = {"units": one.unit} if one.unit else {}
-    if one.name == "status":  # as the CF conventions have it
-        attributes["flag_values"] = list(range(len(_core.member_statuses)))
-        attributes["flag_meanings"] = " ".join(_core.member_statuses)
-    group.create_array(
-        one.name,
-        shape=(*shape, *one.shape),
-        chunks=tuple(max(size, 1) for size in (*blocks.block_shape, *one.shape)),
-        dtype=np.dtype(one.dtype),
-        fill_value=one.fill,
-        compressors=_compressor(),
-        dimension_names=(*axes, *one.labels),
-        attributes=attributes,
-    )
+def _new_array(
+    group: zarr.Group,
+    name: str,
+    shape: tuple[int, ...],
+    dtype: Any,
+    fill: Any,
+    axes: tuple[str, ...],
+    unit: str,
+    chunks: Any = "auto",
+) -> Any:
+    """Make an array whose compressor knows a chunk that a disk has changed."""
+    return group.create_array(
+        name, shape=shape, dtype=dtype, fill_value=fill, chunks=chunks, dimension_names=axes,
+        attributes={"units": unit} if unit else {},
+        compressors=zarr_module().codecs.ZstdCodec(checksum=True),
+    )  # fmt: skip
 
 
 @contextmanager

@@ -28,7 +28,12 @@ def one_writer(path: Path) -> Iterator[None]:
     descriptor = os.open(path, os.O_RDONLY)
     _held.add(descriptor)
     try:
-        _lock(descriptor, path)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise other_writer(path) from None
+        except OSError:  # this file system has no such locks
+            pass
         yield
     finally:
         if descriptor in _held:  # not in a process that was forked meanwhile
@@ -44,15 +49,6 @@ def other_writer(path: Path) -> OSError:
         f"store = {str(path)!r}: another run is writing it: wait until that has ended, or choose "
         "another name"
     )
-
-
-def _lock(descriptor: int, path: Path) -> None:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise other_writer(path) from None
-    except OSError:  # this file system has no such locks
-        pass
 
 
 def _let_go() -> None:

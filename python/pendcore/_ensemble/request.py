@@ -86,11 +86,6 @@ class Request:
         """Return the keywords with which `simulate` makes a member's run."""
         return self.options | {"events": self.events}
 
-    def of_exponents(self) -> dict[str, Any]:
-        """Return the keywords with which `lyapunov` makes it."""
-        same = ("rtol", "atol", "max_step", "max_steps")
-        return {name: self.options[name] for name in same if name in self.options}
-
     def variables(self, n: int) -> list[Variable]:
         """Return the arrays of the result for n links."""
         links: dict[str, Any] = {"link": range(1, n + 1)}

@@ -43,21 +43,18 @@ def run_members(
     states = np.full((*shape, *times, 2 * n), np.nan)
     events = request.events
     first = np.full((*shape, len(events)), np.nan) if request.has(FirstEvent) else None
-    kept: dict[type[Reducer], npt.NDArray[Any]] = {
-        kind: arrays[name] for name, one in request.reducers.items()
-        for kind in (Extremes, EnergyDrift, LargestExponent) if isinstance(one, kind)
-    }  # fmt: skip
     given = request.options | {
         "store": "end" if request.t_eval is None else "times",
         "t_eval": request.t_eval,
         "events": [event._as_pair() for event in events],
     }
     arrays |= {"q": states[..., :n], "qd": states[..., n:]}
+    kept: dict[type[Reducer], npt.NDArray[Any]] = {}
     for name, one in request.reducers.items():
         if isinstance(one, FirstEvent) and first is not None:
             arrays[name] = first[..., request.event_number(name)]
-        elif type(one) in kept:  # two of a kind are one
-            arrays[name] = kept[type(one)]
+        else:  # two of a kind are one
+            arrays[name] = kept.setdefault(type(one), arrays[name])
     filled = {one.name: arrays[one.name] for one in variables}
     return _outcome(filled, *_core.ensemble(
         members.scene._compiled, shape, members.q0, members.qd0,

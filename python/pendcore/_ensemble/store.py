@@ -1,15 +1,16 @@
 """Results on disk, block by block: a group of Zarr 3, which xarray reads.
 
-Each variable of the result is an array whose chunks are the blocks of the ensemble. The status of a
-block is written last, so that a block counts as done only if all of it is there. A store holds
-neither times of day nor names of machines: two runs of one ensemble write the same bytes.
+Each variable of the result is an array whose chunks are the blocks of the ensemble. A block counts
+as done if all of its files are there. A store holds neither times of day nor names of machines: two
+runs of one ensemble write the same bytes.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -27,19 +28,13 @@ from pendcore._ensemble.about import (
     read_sizes,
 )
 from pendcore._ensemble.blocks import Block, Blocks, require_few_blocks, size_of
-from pendcore._ensemble.coordinates import member_axes, members_from
-from pendcore._ensemble.members import Index, Members
+from pendcore._ensemble.members import Index, Members, member_axes, members_from
 from pendcore._ensemble.new_store import create, named, zarr_module
 from pendcore._ensemble.one_writer import one_writer
 from pendcore._ensemble.request import Request, Variable
 from pendcore._ensemble.run import Arrays
 from pendcore._ensemble.stored_array import StoredArray, file_of, is_there, moved
-from pendcore._ensemble.stored_metadata import (
-    DOCUMENT,
-    attributes_of,
-    axes_of,
-    require_array,
-)
+from pendcore._ensemble.stored_metadata import DOCUMENT, attributes_of, axes_of
 
 _OTHER = {
     CASE: "another scene, or other options or events",
@@ -48,6 +43,7 @@ _OTHER = {
 }
 
 
+@dataclass(frozen=True, slots=True, eq=False)
 class Store:
     """A store that is open; `opened` makes one.
 
@@ -59,32 +55,28 @@ class Store:
         The attributes of the group.
     members, request, blocks
         What is run, and how it is cut.
+    zarr_arrays : dict
+        The arrays of the result, the status first.
+    folder : os.stat_result
+        The folder that was opened.
     """
 
-    __slots__ = ("_folder", "_zarr_arrays", "blocks", "members", "path", "place", "request", "told")
-
-    def __init__(
-        self,
-        path: Path,
-        place: Path,
-        told: dict[str, Any],
-        zarr_arrays: dict[str, Any],
-        members: Members,
-        request: Request,
-        blocks: Blocks,
-    ) -> None:
-        self.path, self.place, self.told = path, place, told
-        self.members, self.request, self.blocks = members, request, blocks
-        self._zarr_arrays = zarr_arrays
-        self._folder = self.place.stat()
+    path: Path
+    place: Path
+    told: dict[str, Any]
+    members: Members
+    request: Request
+    blocks: Blocks
+    zarr_arrays: dict[str, Any]
+    folder: os.stat_result
 
     @property
     def arrays(self) -> dict[str, StoredArray]:
         """Return the arrays of the result, which read from the disk when they are indexed."""
-        status = self._zarr_arrays["status"]
+        status = self.zarr_arrays["status"]
         return {
             name: StoredArray(self.path, self.place, one, status)
-            for name, one in self._zarr_arrays.items()
+            for name, one in self.zarr_arrays.items()
         }
 
     def not_done(self) -> tuple[int, str]:
@@ -92,7 +84,7 @@ class Store:
 
         Nothing is read.
         """
-        arrays = self._zarr_arrays.values()
+        arrays = self.zarr_arrays.values()
         if all(one.nchunks_initialized == one.nchunks for one in arrays):
             return 0, ""
         lost = [(block, files) for block in self.blocks if (files := [*self._missing(block)])]
@@ -104,18 +96,17 @@ class Store:
         return not any(self._missing(block))
 
     def _missing(self, block: Block) -> Iterator[str]:
-        files = _files(self._zarr_arrays, block)
+        files = _files(self.zarr_arrays, block)
         return (file for file in files if not (self.place / file).exists())
 
     def write(self, block: Block, arrays: Arrays) -> None:
         """Write the results of a block."""
         self.require_there()
-        with _writing(self.path, self.place):
-            _write(self.place, self._zarr_arrays, block, arrays)
+        _write(self.path, self.place, lambda: self.zarr_arrays, block, arrays)
 
     def require_there(self) -> None:
         """Raise an OSError if the folder that was opened is no longer under its name."""
-        if not is_there(self.place) or not os.path.samestat(self.place.stat(), self._folder):
+        if not is_there(self.place) or not os.path.samestat(self.place.stat(), self.folder):
             raise moved(self.path)
 
     def require_all(self) -> None:
@@ -132,34 +123,35 @@ class Store:
 
 def write_block(path: Path, variables: list[Variable], block: Block, arrays: Arrays) -> None:
     """Write the results of a block into a store, without reading the rest of it."""
-    with _writing(path, path):
-        zarr_arrays = {one.name: _zarr_array(path, one.name, "r+") for one in variables}
-        _write(path, zarr_arrays, block, arrays)
+
+    def opened() -> dict[str, Any]:
+        return {one.name: _zarr_array(path, one.name, "r+") for one in variables}
+
+    _write(path, path, opened, block, arrays)
 
 
-@contextmanager
-def _writing(path: Path, place: Path) -> Iterator[None]:
+def _write(
+    path: Path, place: Path, opened: Callable[[], dict[str, Any]], block: Block, arrays: Arrays
+) -> None:
     """See that a store is there before and after it is written: Zarr would make folders anew."""
-    if not is_there(place):
-        raise moved(path)
+    files: list[str] = []
     try:
+        if not is_there(place):
+            raise moved(path)
         with named(path):
-            yield
+            zarr_arrays = opened()
+            files = _files(zarr_arrays, block)
+            for name in reversed(zarr_arrays):  # the status is the first, and is written last
+                zarr_arrays[name][block] = arrays[name]
+        if not is_there(place):
+            raise moved(path)
     except Exception as error:
         if is_there(place) and not isinstance(error, FileNotFoundError):
             raise
         raise moved(path) from error
-    if not is_there(place):
-        raise moved(path)
-
-
-def _write(place: Path, zarr_arrays: dict[str, Any], block: Block, arrays: Arrays) -> None:
-    try:
-        for name in reversed(zarr_arrays):  # the status is the first of them, and is written last
-            zarr_arrays[name][block] = arrays[name]
     finally:
         if not is_there(place):
-            _take_back(place, _files(zarr_arrays, block))
+            _take_back(place, files)
 
 
 def _take_back(place: Path, files: list[str]) -> None:
@@ -248,27 +240,24 @@ def _opened(path: Path, mode: str) -> Store:
     scene, request = read_about(told, t_eval)
     n, axes = len(scene.links), member_axes(shape)
     lengths: dict[str, int | None] = dict(zip(axes, shape, strict=True))
-    of_states = lengths | {"link": n}
-    found = {name: _read(place, name, of_states) for name in ("q0", "qd0")}
+    found = {name: _read(place, name, lengths | {"link": n}) for name in ("q0", "qd0")}
     found |= {name: _read(place, name, lengths) for name in told[VARY]}
     zarr_arrays: dict[str, Any] = {}
     for one in request.variables(n):
         name = PureWindowsPath(one.name)  # it knows the separators of every system
         if name.drive or name.root or ".." in name.parts:
             raise ValueError(f"{KEEP}: {one.name!r} is no name of a reducer")
-        whole = (*shape, *one.shape)
+        own = lengths | dict(zip(one.labels, one.shape, strict=True))
         chunk = [max(size, 1) for size in (*block_shape, *one.shape)]
-        dtype = np.dtype(one.dtype).name
-        require_array(place, one.name, dtype, (*axes, *one.labels), whole, chunk)
+        axes_of(place, one.name, np.dtype(one.dtype).name, own, chunk)
         zarr_arrays[one.name] = _zarr_array(place, one.name, mode)
     members = members_from(scene, shape, found)
-    return Store(path, place, told, zarr_arrays, members, request, blocks)
+    return Store(path, place, told, members, request, blocks, zarr_arrays, place.stat())
 
 
-def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[tuple[str, ...], Any]:
+def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[list[str], Any]:
     """Return axes and values of starts, of a parameter or of times."""
-    axes = axes_of(path, name, lengths)
-    require_array(path, name, "float64", axes, [lengths[axis] for axis in axes])
+    axes = axes_of(path, name, "float64", lengths)
     values = np.asarray(_zarr_array(path, name, "r")[...])
     if not np.isfinite(values).all():  # so reads a file that is gone
         raise ValueError(f"{name}: a file of it is missing, or it has a value that is not finite")
@@ -287,11 +276,9 @@ def continued(path: Path, members: Members, request: Request) -> Store:
                 f"store = {str(path)!r}: has results of {what}: results are never mixed; choose "
                 "another name, or remove it"
             )
+    there, here = ({"q0": x.q0, "qd0": x.qd0, **x.vary} for x in (store.members, members))
     same = store.members.shape == members.shape and _equal(store.request.t_eval, request.t_eval)
-    for one in ("q0", "qd0"):
-        same = same and _equal(getattr(store.members, one), getattr(members, one))
-    for name, values in members.vary.items():
-        same = same and _equal(store.members.vary[name], values)
+    same = same and all(_equal(there[name], values) for name, values in here.items())
     if not same:
         raise ValueError(
             f"store = {str(path)!r}: has other starts, parameters or times: results are never "

@@ -1,7 +1,7 @@
-"""What the files zarr.json of a store say, checked before Zarr reads or makes room for numbers.
+"""What the files zarr.json of a store say, compared with what `new_store.create` writes.
 
 A store may come from anywhere. Zarr also opens groups of its format 2, whose codecs can run code,
-and takes an array of any shape; what is not as `new_store.create` writes it is refused here.
+and makes room for an array of any shape: a file is compared before Zarr reads it.
 """
 
 from __future__ import annotations
@@ -21,63 +21,57 @@ MOST_BYTES = 2**28
 
 def attributes_of(path: Path) -> dict[str, Any]:
     """Return the attributes of the group; a ValueError says what is wrong with its file."""
-    attributes = _document(path, DOCUMENT, "group").get("attributes")
+    told = _document(path, DOCUMENT, "group")
+    attributes = told.get("attributes")
     if not isinstance(attributes, dict):
-        raise ValueError(f"{DOCUMENT}: attributes = {_short(attributes)}: must be a table")
+        raise _not_as_written(DOCUMENT, told, "attributes", "a table")
     return attributes
 
 
-def axes_of(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[str, ...]:
-    """Return the axes of a start, which are some of those that have these lengths, in order."""
-    found = _document(path, f"{name}/{DOCUMENT}", "array").get("dimension_names")
-    names = [] if found is None else found  # Zarr writes none for an array without axes
-    if not isinstance(names, list) or names != [axis for axis in lengths if axis in names]:
-        known = ", ".join(lengths)
-        raise ValueError(
-            f"{name}/{DOCUMENT}: dimension_names = {_short(found)}: must be of {known}, in order"
-        )
-    return tuple(names)
-
-
-def require_array(
+def axes_of(
     path: Path,
     name: str,
     dtype: str,
-    axes: Sequence[str],
-    shape: Sequence[int | None],
+    lengths: Mapping[str, int | None],
     chunk: Sequence[int] | None = None,
-) -> None:
-    """Refuse the file of an array that has other axes, lengths, numbers or codecs.
+) -> list[str]:
+    """Return the axes of an array; a ValueError says what in its file is not as it was written.
 
-    A length of None may be any. Without ``chunk``, those of starts, a chunk is at most the array.
+    ``lengths`` has axes in their order, and how long they are; None stands for any length. With
+    ``chunk`` the array has all of them. Without, it is one of the starts: it has some of them, and
+    a chunk that Zarr chose, which is no larger than the array.
     """
     where = f"{name}/{DOCUMENT}"
     told = _document(path, where, "array")
-
-    def require(key: str, is_right: bool, wanted: str) -> None:
-        if not is_right:
-            raise ValueError(f"{where}: {key} = {_short(told.get(key))}: must be {wanted}")
-
-    found = told.get("shape")
-    require("data_type", told.get("data_type") == dtype, dtype)
-    require("dimension_names", (told.get("dimension_names") or []) == [*axes], f"{[*axes]}")
-    lengths = [
-        size if one is None else one for one, size in zip(shape, _sizes(found), strict=False)
-    ]
-    require("shape", _sizes(found) == lengths and len(lengths) == len(shape), str(list(shape)))
-    own = _sizes(_at(told, "chunk_grid", "configuration", "chunk_shape"))
-    fits = len(own) == len(lengths) and all(
-        1 <= one <= max(size, 1) for one, size in zip(own, lengths, strict=True)
-    )
-    is_own = fits if chunk is None else own == list(chunk)
-    is_own = is_own and _at(told, "chunk_grid", "name") == "regular"
-    require("chunk_grid", is_own, f"regular, {list(chunk or lengths)} or less")
-    keys = _at(told, "chunk_key_encoding", "name")
-    require("chunk_key_encoding", keys == "default", "default")
-    codecs = told.get("codecs")
-    names = [_at(one, "name") for one in codecs] if isinstance(codecs, list) else [None]
-    known = all(isinstance(one, str) and one in CODECS for one in names)
-    require("codecs", known, f"of {', '.join(sorted(CODECS))}: others may run code")
+    names = told.get("dimension_names") or []  # Zarr writes none for an array without axes
+    try:
+        axes = [axis for axis in lengths if chunk is not None or axis in names]
+        shape: list[Any] = [
+            told["shape"][0] if lengths[axis] is None else lengths[axis] for axis in axes
+        ]
+        sizes = told["chunk_grid"]["configuration"]["chunk_shape"] if chunk is None else chunk
+        pairs = zip(sizes, shape, strict=True)
+        fits = all(type(one) is int and 1 <= one <= max(size, 1) for one, size in pairs)
+        codecs = {one["name"] for one in told["codecs"]}
+    except (IndexError, KeyError, TypeError, ValueError):
+        wanted = "shape, chunk_grid, codecs and dimension_names of an array of this store"
+        raise ValueError(f"{where}: must have {wanted}") from None
+    if not codecs <= CODECS:
+        known = ", ".join(sorted(CODECS))
+        raise _not_as_written(where, told, "codecs", f"of {known}: others may run code")
+    written = {
+        "data_type": dtype,
+        "dimension_names": axes or None,
+        "shape": shape,
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [*sizes]}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+    }
+    for key, value in written.items():
+        if json.dumps(told.get(key)) != json.dumps(value):  # to Python, 1 and 1.0 are True
+            raise _not_as_written(where, told, key, _short(value))
+    if chunk is None and not fits:
+        raise _not_as_written(where, told, "chunk_grid", f"of chunks of {shape} or less")
+    return axes
 
 
 def _document(path: Path, name: str, node: str) -> dict[str, Any]:
@@ -94,21 +88,12 @@ def _document(path: Path, name: str, node: str) -> dict[str, Any]:
         raise ValueError(f"{name}: {_short(told)}: must be a table")
     for key, value in (("zarr_format", 3), ("node_type", node)):
         if told.get(key) != value:
-            raise ValueError(f"{name}: {key} = {_short(told.get(key))}: must be {value}")
+            raise _not_as_written(name, told, key, value)
     return told
 
 
-def _at(told: Any, *keys: str) -> Any:
-    """Return what stands under keys of tables in tables; None if something does not."""
-    for key in keys:
-        told = told.get(key) if isinstance(told, dict) else None
-    return told
-
-
-def _sizes(found: Any) -> list[int]:
-    """Return a list of whole numbers from 0; an empty one for anything else."""
-    is_list = isinstance(found, list) and all(type(one) is int and one >= 0 for one in found)
-    return found if is_list else []
+def _not_as_written(where: str, told: dict[str, Any], key: str, wanted: object) -> ValueError:
+    return ValueError(f"{where}: {key} = {_short(told.get(key))}: must be {wanted}")
 
 
 def _short(value: Any) -> str:

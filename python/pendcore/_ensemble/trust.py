@@ -1,10 +1,8 @@
 """Which members are resolved: a second, independent ensemble agrees with what they found.
 
-The second ensemble has tolerances a hundredth of the first ones, another method, and constants and
-starts that are some last bits off, as the second runs of `Solution.estimate_error` have. Where a
-motion amplifies a last bit to something that can be seen, the two disagree. Where events are looked
-for, Taylor series are kept: at other tolerances they have another order and other steps, and
-another method would take several times as long.
+`Ensemble.second` says how that is made. Where a motion amplifies a last bit to something that can
+be seen, the two disagree. Where events are looked for, Taylor series are kept, as another method
+would take several times as long.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pendcore._ensemble.blocks import blocks_of, usual_block
-from pendcore._ensemble.distribution import InMemory, Limits, run_blocks
+from pendcore._ensemble.distribution import run_blocks
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
 from pendcore._ensemble.new_store import bytes_of, in_words
@@ -15,7 +15,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
 from pendcore._messages.arguments import did_you_mean, time_limit_of, whole_number
-from pendcore._messages.handed_over import hand_over
+from pendcore._messages.handed_over import hand_over, raise_with
 from pendcore._messages.progress import reporting
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.run_error import REMEDY, require_on_failure
@@ -49,23 +49,17 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
     if path is not None:
         what += f" into {path}, up to {in_words(bytes_of(members, request))}"
     with reporting(given["progress"], what, members.count, "members") as report:
-        limits = Limits(workers, limit, report)
+        how = executor, workers, limit, report
         if path is not None:
             with store_for(Path(path), members, request, chunk) as store:
-                found = run_blocks(members, request, store.blocks, store, limits, executor)
+                found = run_blocks(members, request, store.blocks, store, *how)
         elif executor is not None:
             blocks = blocks_of(members.shape, chunk or usual_block(members, request))
-            target = InMemory(members, request)
-            found = run_blocks(members, request, blocks, target, limits, executor)
+            found = run_blocks(members, request, blocks, None, *how)
         else:
             found = run_members(members, request, workers, limit, report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
-    if found.error is not None:
-        hand_over(found.error, ensemble=result)
-        try:
-            raise found.error
-        finally:
-            del found  # the traceback holds this frame: what it holds would wait for the collector
+    raise_with(found.error, ensemble=result)
     return _checked(result, given["on_failure"])
 
 
@@ -86,11 +80,11 @@ def _checked(found: Ensemble, on_failure: str) -> Ensemble:
     place = tuple(found.failed[0].tolist())
     complaint = f"of {len(found)} members {told}; .failed lists those that failed, the first is "
     complaint += f"{place}: .message({place}) says why"
-    if on_failure == "raise":
-        raise hand_over(RuntimeError(complaint), ensemble=found)
     try:
+        if on_failure == "raise":
+            raise RuntimeError(complaint)
         warn(f"{complaint}; {REMEDY}")
-    except PendcoreWarning as warning:
-        hand_over(warning, ensemble=found)
+    except (RuntimeError, PendcoreWarning) as error:
+        hand_over(error, ensemble=found)
         raise
     return found

@@ -106,9 +106,6 @@ class LyapunovExponents:
         return float(np.log(10)) * self.time
 
     def __repr__(self) -> str:
-        return str(self)
-
-    def __str__(self) -> str:
         if not self.growth.shape[1]:
             return "no Lyapunov exponents: nothing of the scene can move"
         until = f" to {self.t[-1]:.6g} s" if len(self.t) else ", where no time was reached"
@@ -149,8 +146,8 @@ def lyapunov(
     *,
     count: int | None = None,
     transient: float = 0.0,
-    rtol: float = 1e-9,
-    atol: float = 1e-12,
+    rtol: float = RUN_DEFAULTS["rtol"],
+    atol: float = RUN_DEFAULTS["atol"],
     t_eval: npt.ArrayLike | None = None,
     max_step: float = inf,
     max_steps: int = RUN_DEFAULTS["max_steps"],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss
 """The entries that count what is lost; the others count work done on the chain."""
 
 
-class Ledger(Mapping[str, Floats]):
+class Ledger(dict[str, Floats]):
     """Work and loss since the start, J, an entry for each kind that the scene has.
 
     ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
@@ -40,62 +40,29 @@ class Ledger(Mapping[str, Floats]):
     True
     """
 
-    __slots__ = ("_entries",)
-    _entries: dict[str, Floats]
-
-    def __init__(self, entries: Mapping[str, Floats], gain: Floats) -> None:
-        """Take the entries, and how much energy the chain has gained since the start, J."""
-        booked = sum(
-            (-x if name in LOSSES else x for name, x in entries.items()), np.zeros(len(gain))
-        )
-        residual = gain - booked
-        residual.flags.writeable = False
-        object.__setattr__(self, "_entries", {**entries, "residual": residual})
-
-    def __getitem__(self, name: str) -> Floats:
-        try:
-            return self._entries[name]
-        except KeyError:
-            raise KeyError(self._has_no(name)) from None
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
-
-    def __len__(self) -> int:
-        return len(self._entries)
+    __slots__ = ()
 
     def __getattr__(self, name: str) -> Floats:
-        try:
-            return self._entries[name]
-        except KeyError:
-            raise AttributeError(self._has_no(name)) from None
+        if name not in self:
+            raise AttributeError(self._has_no(name))
+        return self[name]
+
+    def __missing__(self, name: str) -> Floats:
+        raise KeyError(self._has_no(name))
 
     def _has_no(self, name: str) -> str:
-        return f"the ledger has no entry {name!r}: it has {', '.join(self._entries)}"
-
-    def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"{name}: a ledger cannot be changed")
+        return f"the ledger has no entry {name!r}: it has {', '.join(self)}"
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._entries]
+        return [*super().__dir__(), *self]
 
-    __eq__ = object.__eq__  # Mapping.__eq__ would compare arrays
-    __hash__ = object.__hash__
-
-    def __reduce__(self) -> tuple[object, tuple[dict[str, Floats]]]:
-        return _again, (self._entries,)
+    __eq__ = object.__eq__  # that of a dictionary would compare arrays
 
     def __repr__(self) -> str:
         if not len(self.residual):
             return f"<Ledger: {', '.join(self)} at no times>"
         ends = ", ".join(f"{name} {entry[-1]:.6g}" for name, entry in self.items())
         return f"<Ledger, J, at the last of {len(self.residual)} times: {ends}>"
-
-
-def _again(entries: dict[str, Floats]) -> Ledger:
-    ledger = object.__new__(Ledger)
-    object.__setattr__(ledger, "_entries", entries)
-    return ledger
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -153,4 +120,7 @@ def energy_over(
         np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
     )
     with np.errstate(all="ignore"):
-        return Energy(kinetic, potential, total, Ledger(entries, total - sum(start)))
+        booked = (-entry if name in LOSSES else entry for name, entry in entries.items())
+        residual = total - sum(start) - sum(booked, np.zeros(len(total)))
+    residual.flags.writeable = False
+    return Energy(kinetic, potential, total, Ledger(entries, residual=residual))

@@ -7,11 +7,11 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from io import TextIOWrapper
 from typing import Any
 
 from pendcore import PendcoreWarning, build
 from pendcore.cli import completion, cost, derive, explain, map, plot, run, show, trust
-from pendcore.cli.surroundings import make_surroundings_safe
 from pendcore.cli.usage import NotWritten, UsageError
 from pendcore.cli.words import known_words
 
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         Exit status: 0 fine, 1 the run failed or was interrupted, or a file is not written, 2 wrong
         usage, 141 nobody reads.
     """
-    make_surroundings_safe()
+    _make_surroundings_safe()
     parser, commands = _parser()
     if "_ARGCOMPLETE" in os.environ:
         completion.complete(parser)
@@ -62,12 +62,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             status = int(args.execute(args))
             sys.stdout.flush()
             return status
-        except UsageError as error:
+        except (UsageError, NotWritten) as error:
             print(f"pendcore {args.command}: {error}", file=sys.stderr)
-            return 2
-        except NotWritten as error:
-            print(f"pendcore {args.command}: {error}", file=sys.stderr)
-            return 1
+            return 2 if isinstance(error, UsageError) else 1
         except KeyboardInterrupt:  # outside the run, which handles its own
             print(f"pendcore {args.command}: interrupted", file=sys.stderr)
             return 1
@@ -81,6 +78,21 @@ def main(argv: Sequence[str] | None = None) -> int:
             if not error.filename:
                 _print_no_more()
             return 1
+
+
+def _make_surroundings_safe() -> None:
+    """Draw by Agg, whatever backend is set, and print any text to any stream.
+
+    A notebook sets a backend for all that is started from it, and matplotlib cannot be imported
+    where that backend is missing. Letters that the encoding of a stream lacks are printed escaped.
+    """
+    os.environ["MPLBACKEND"] = "agg"
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed: print(file=None) would go to standard output
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
+        elif isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _print_no_more() -> None:
@@ -101,7 +113,15 @@ def _parser() -> tuple[argparse.ArgumentParser, Any]:
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (run, explain, plot, show, trust, cost, map, derive, completion):
-        command.add_parser(commands)
+        parser_of_command = commands.add_parser(
+            command.__name__.rpartition(".")[2],
+            help=command.HELP,
+            description=command.DESCRIPTION,
+            epilog=command.EPILOG,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        command.add_arguments(parser_of_command)
+        parser_of_command.set_defaults(execute=command.execute)
     return parser, commands
 
 

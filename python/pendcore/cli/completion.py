@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
 from pendcore.cli.usage import UsageError
 
-_EPILOG = """
+HELP = "let a shell complete sub-commands, options and files"
+DESCRIPTION = "Print a script with which a shell completes sub-commands, options and files."
+EPILOG = """
 to switch completion on, for this user:
   bash   pendcore completion bash >> ~/.bashrc
   zsh    pendcore completion zsh >> ~/.zshrc
@@ -17,17 +18,9 @@ and open a new shell. It needs the package argcomplete, which is in pendcore's e
 SHELLS = ("bash", "zsh", "fish")
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "completion",
-        help="let a shell complete sub-commands, options and files",
-        description="Print a script with which a shell completes sub-commands, options and files.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument("shell", choices=SHELLS, help="whose script")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -5,17 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from typing import Any
 
 from pendcore import Case
-from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
+from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
 from pendcore.options import OPTIONS
 
-_EPILOG = """
+HELP = "measure what accuracy costs on a case: errors and times of every method"
+DESCRIPTION = "Sweep methods and tolerances on a case; without one, the textbook's."
+EPILOG = """
 what is written into the folder:
   cost.txt    error, time and right-hand sides of every method at every tolerance; what to take
   cost.png    time against error, a line for each method
@@ -28,15 +29,8 @@ example:
 FILES = ("cost.txt", "cost.json", "cost.png")
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "cost",
-        help="measure what accuracy costs on a case: errors and times of every method",
-        description="Sweep methods and tolerances on a case; without one, the textbook's.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     add_case_and_folder(parser)
     parser.add_argument(
         "--error",
@@ -64,7 +58,6 @@ def add_parser(commands: Any) -> None:
         help="timed calls of each method, as far as the time allows; default: %(default)s",
     )
     parser.add_argument("--json", action="store_true", help="print the numbers as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

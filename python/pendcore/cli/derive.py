@@ -10,12 +10,14 @@ from typing import Any
 
 import pendcore
 from pendcore import Case
-from pendcore.cli.case_and_folder import case_of, folder_of
+from pendcore.cli.arguments import case_of, folder_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 from pendcore.messages import whole_file
 
-_EPILOG = """
+HELP = "derive the equations of motion in symbols: steps, code, a report"
+DESCRIPTION = "Derive the equations of motion of a case in symbols, as the textbook does."
+EPILOG = """
 forms:
   text     every step of the derivation, as text
   latex    the same for LaTeX with amsmath
@@ -34,15 +36,8 @@ examples:
 FORMS = ("text", "latex", "octave", "inline", "python", "cpp", "report")
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "derive",
-        help="derive the equations of motion in symbols: steps, code, a report",
-        description="Derive the equations of motion of a case in symbols, as the textbook does.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument(
         "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's"
     )
@@ -60,7 +55,6 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="write a worksheet beside the report: the same with blanks",
     )
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from pendcore.cli.case_and_folder import case_of
+from pendcore.cli.arguments import case_of
 from pendcore.cli.usage import blamed_on_usage
 from pendcore.messages import warn
 
-_EPILOG = """
+HELP = "say what a case simulates, what it costs, how fast it moves"
+DESCRIPTION = "Explain a case at its start, without running it."
+EPILOG = """
 what is told:
   the effects, and what each costs in a right-hand side: operations, and ns measured on the spot
   degrees of freedom, counted as the textbook does and from the rank of the constraints
@@ -23,20 +24,12 @@ example:
 """
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "explain",
-        help="say what a case simulates, what it costs, how fast it moves",
-        description="Explain a case at its start, without running it.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument(
         "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's case"
     )
     parser.add_argument("--json", action="store_true", help="print the same as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -6,15 +6,16 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
-from pendcore.cli.case_or_solution import load_solution
+from pendcore.cli.arguments import load_solution
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.messages import whole_file
 from pendcore.plotting import KINDS, save_figure
 
-_EPILOG = """
+HELP = "draw a saved solution"
+DESCRIPTION = "Draw a figure: without --what the textbook's, the angles in degrees over time."
+EPILOG = """
 example:
   pendcore plot out/textbook/solution.npz -o angles.pdf
   pendcore plot out/textbook/solution.npz --what path -o path.png
@@ -26,16 +27,8 @@ DRAWN = [kind for kind in KINDS if kind != "section"]
 """A section needs events, which a saved solution does not always have."""
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "plot",
-        help="draw a saved solution",
-        description="Draw a figure: without --what the textbook's, the angles in degrees over "
-        "time.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument("solution", type=Path, metavar="RUN.npz", help="written by `pendcore run`")
     parser.add_argument(
         "-o",
@@ -57,7 +50,6 @@ def add_parser(commands: Any) -> None:
         help="shade what lies past the time until which the error of an angle is below this",
     )
     parser.add_argument("--json", action="store_true", help="print what was written as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import re
 import sys
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pendcore import AccuracyError, Case, Solution
-from pendcore.case_files import with_line
-from pendcore.cli.case_and_folder import add_case_and_folder, case_of, folder_of
+from pendcore.case_files import KEYS, with_line
+from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
-from pendcore.cli.parameters import with_parameters
 from pendcore.cli.summary import facts, text
-from pendcore.cli.table import write_csv
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
-from pendcore.cli.words import CHOSEN_FOR_ERROR
+from pendcore.cli.words import CHOSEN_FOR_ERROR, of_the_run
+from pendcore.messages import reporting
 from pendcore.plotting import save_figure
 
-_EPILOG = """
+HELP = "simulate a case, write solution, summary and figure"
+DESCRIPTION = "Simulate a case; without one, the textbook's double pendulum."
+EPILOG = """
 what is written into the folder:
   solution.npz   t (s), q (rad), qd (rad/s), y, the case as TOML; pendcore.load() reads it whole
   summary.txt    what was simulated, how it ended, what it took, drift of energy, largest reactions
@@ -52,19 +57,15 @@ a case:
 
 FILES = ("summary.txt", "summary.json", "solution.npz", "angles.png")
 CSV = "states.csv"
+_START = re.compile(r"(q0|qd0)\[(\d+)\]")
 _MANY_STEPS = 100_000
 """The number of steps above which writing the solution takes seconds."""
+_ROWS_AT_ONCE = 10_000
+"""The number of rows of a CSV file between two reports of progress."""
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "run",
-        help="simulate a case, write solution, summary and figure",
-        description="Simulate a case; without one, the textbook's double pendulum.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     add_case_and_folder(parser)
     parser.add_argument(
         "--error",
@@ -98,14 +99,13 @@ def add_parser(commands: Any) -> None:
         "--csv", action="store_true", help=f"write the states into {CSV} as well, a row per time"
     )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
-        case = with_parameters(case, args.parameters) if args.parameters else case
+        case = _with_parameters(case, args.parameters) if args.parameters else case
         case = _with_options(case, _options_of(args))
     folder = folder_of(args)
     with new_folder(folder):
@@ -153,6 +153,45 @@ def _options_of(args: argparse.Namespace) -> dict[str, Any]:
     return {name: value for name, value in found.items() if value is not None}
 
 
+def _with_parameters(case: Case, given: list[str]) -> Case:
+    """Return the case with numbers replaced, each ``NAME=VALUE``.
+
+    A name is that of a parameter of the scene, or of the start: ``q0[1]``, ``qd0[2]``.
+    """
+    starts = {"q0": list(case.q0), "qd0": list(case.qd0)}
+    of_scene: dict[str, float] = {}
+    names: set[str] = set()
+    for one in given:
+        name, equals, text = one.partition("=")
+        if name in names:
+            raise UsageError(f"--parameters {one}: {name} is given twice: give it once")
+        names.add(name)
+        if name in KEYS["run"]:
+            shorter = f", or give --{name} {text}" if name in ("error", *CHOSEN_FOR_ERROR) else ""
+            raise UsageError(f"--parameters {one}: {of_the_run(name, text)}{shorter}")
+        try:
+            value = float(text)
+        except ValueError:
+            equals = ""
+        if not equals:
+            raise UsageError(f"--parameters {one}: must be NAME=VALUE, such as link[2].mass=0.9")
+        start = _START.fullmatch(name)
+        if name in starts:
+            raise UsageError(f"--parameters {one}: must say of which link, such as {name}[1]")
+        if start is None:
+            of_scene[name] = value
+        elif not 1 <= int(start[2]) <= len(case.q0):
+            raise UsageError(
+                f"--parameters {one}: the scene has {len(case.q0)} links, counted from 1"
+            )
+        else:
+            starts[start[1]][int(start[2]) - 1] = value
+    return Case(
+        scene=case.scene.with_parameters(of_scene), **starts, t_span=case.t_span, name=case.name,
+        options=case.options,
+    )  # fmt: skip
+
+
 def _with_options(case: Case, given: dict[str, Any]) -> Case:
     """Return the case with other options, and without those that they take the place of."""
     gone = set(given)
@@ -193,7 +232,26 @@ def _write(
         solution.save(files.folder / "solution.npz")
     if CSV in files.names:
         with files.one(CSV) as path:
-            write_csv(solution, path)
+            _write_csv(solution, path)
     with files.one("angles.png") as path:
         save_figure(solution, path, until)
     return found
+
+
+def _write_csv(solution: Solution, path: Path) -> None:
+    """Write a row per time: t (s), q_1.. (rad), qd_1.. (rad/s), every number with all its digits.
+
+    The first row names columns and units. A jump has two rows at one time.
+    """
+    links = range(1, len(solution.scene.links) + 1)
+    names = ["t (s)", *(f"q_{i} (rad)" for i in links), *(f"qd_{i} (rad/s)" for i in links)]
+    rows = np.column_stack([solution.t, solution.q, solution.qd])
+    with (
+        reporting(None, f"writing {path.name}") as report,
+        path.open("w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(names)
+        for begin in range(0, len(rows), _ROWS_AT_ONCE):
+            writer.writerows(rows[begin : begin + _ROWS_AT_ONCE].tolist())
+            report(min(begin + _ROWS_AT_ONCE, len(rows)) / len(rows))

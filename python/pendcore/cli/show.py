@@ -6,16 +6,17 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
+from pendcore.cli.arguments import add_case_or_solution, solution_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.messages import whole_file
 from pendcore.plotting import save_figure
 
-_EPILOG = """
+HELP = "see a case move: a page, a film, or a strip of positions"
+DESCRIPTION = "Write a page that simulates a case, a film of it, or a strip of positions."
+EPILOG = """
 examples:
   pendcore show swing.toml                         a page with the core inside: out/swing.html
   pendcore show swing.toml -o swing.mp4            a film, in true time
@@ -26,15 +27,8 @@ ffmpeg writes MP4; where it is missing, a GIF is written instead.
 """
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "show",
-        help="see a case move: a page, a film, or a strip of positions",
-        description="Write a page that simulates a case, a film of it, or a strip of positions.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
     parser.add_argument(
         "-o",
@@ -61,7 +55,6 @@ def add_parser(commands: Any) -> None:
         help="draw the run pale once the error of an angle may be above this",
     )
     parser.add_argument("--json", action="store_true", help="print what was written as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:

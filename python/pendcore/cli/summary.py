@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from math import degrees, isfinite
+from math import degrees
 from textwrap import wrap
 from typing import Any
 
-import numpy as np
-
 from pendcore import Accuracy, Case, Solution, build
 from pendcore.effects import Effect, Part
-from pendcore.messages import listed
+from pendcore.messages import as_json, listed
 from pendcore.methods import evaluations
 
 _MANY = 12
@@ -56,7 +54,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "not_simulated": [absence._asdict() for absence in case.scene.not_simulated()],
         "version": build.version,
     }
-    plain: dict[str, Any] = _json(found)
+    plain: dict[str, Any] = as_json(found)
     return plain
 
 
@@ -194,14 +192,3 @@ def _rows(pairs: Iterator[tuple[str, str]]) -> Iterator[str]:
         first, *more = wrap(value, 76)
         yield f"  {name:16}  {first}"
         yield from (f"{'':20}{line}" for line in more)
-
-
-def _json(value: Any) -> Any:
-    """JSON knows no tuples, no NumPy, and neither infinities nor NaN."""
-    if isinstance(value, dict):
-        return {key: _json(x) for key, x in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return _json(value.tolist())
-    if isinstance(value, list | tuple):
-        return [_json(x) for x in value]
-    return None if isinstance(value, float) and not isfinite(value) else value

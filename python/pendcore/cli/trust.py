@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
-from math import isfinite
+from collections.abc import Callable
 from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.case_or_solution import add_case_or_solution, solution_of
+from pendcore.cli.arguments import add_case_or_solution, solution_of
 from pendcore.cli.horizon import LIMIT, horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage
+from pendcore.messages import as_json
 
-_EPILOG = """
+HELP = "say until when a run is right"
+DESCRIPTION = "Say how far to trust a run: a saved run, or the run of a case."
+EPILOG = """
 what is told:
   until when every angle is right to the limit, from independent second runs (sol.valid_until)
   the largest error of the angles and of the positions as far as it is known (sol.estimate_error)
@@ -24,15 +27,8 @@ example:
 """
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "trust",
-        help="say until when a run is right",
-        description="Say how far to trust a run: a saved run, or the run of a case.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
     parser.add_argument(
         "--limit",
@@ -45,7 +41,6 @@ def add_parser(commands: Any) -> None:
         "--time-limit", type=float, metavar="S", help="seconds of computing for the second runs"
     )
     parser.add_argument("--json", action="store_true", help="print the same as JSON")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -73,25 +68,18 @@ def trust(
     horizon = horizon_of(solution, estimate, limit)
     found: dict[str, tuple[float | None, str]] = {
         "valid_until": (horizon.valid_until, f"right to {limit:g} rad {horizon.sentence}"),
-        "largest_error": (_number(estimate.largest), str(estimate)),
+        "largest_error": (as_json(estimate.largest), str(estimate)),
     }
-    try:
-        growth = solution.lyapunov()
-        found["lyapunov_exponent"] = (_number(growth.largest), str(growth))
-    except ValueError as refusal:  # dry friction and stops: neighbours do not diverge at a rate
-        found["lyapunov_exponent"] = (None, f"no Lyapunov exponent: {_without_name(refusal)}")
-    try:
-        defect = solution.defect()
-        found["defect"] = (_number(defect.largest), str(defect))
-    except ValueError as refusal:
-        found["defect"] = (None, f"no defect: {_without_name(refusal)}")
+    measures: dict[str, tuple[str, Callable[[], Any]]] = {
+        "lyapunov_exponent": ("Lyapunov exponent", solution.lyapunov),
+        "defect": ("defect", solution.defect),
+    }
+    for key, (noun, measure) in measures.items():
+        try:
+            told = measure()
+        except ValueError as refusal:  # with dry friction and stops, neighbours part at no rate
+            why = str(refusal).removeprefix(f"{measure.__name__}: ")
+            found[key] = (None, f"no {noun}: {why}")
+        else:
+            found[key] = (as_json(told.largest), str(told))
     return found
-
-
-def _without_name(refusal: ValueError) -> str:
-    """Return a complaint without the name of the method that it begins with."""
-    return str(refusal).removeprefix("lyapunov: ").removeprefix("defect: ")
-
-
-def _number(x: float) -> float | None:
-    return x if isfinite(x) else None

@@ -6,13 +6,13 @@ import json
 import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from math import inf, isfinite
+from math import inf
 from textwrap import shorten, wrap
 from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
-from pendcore.messages import number, whole_file
+from pendcore.messages import as_json, number, whole_file
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -127,10 +127,24 @@ class AccuracyCost:
         return f"{advice}; ten times the accuracy costs {there / here:.2g} times the time"
 
     def plot(self, ax: Any = None, *, y: str = "time", **line_properties: Any) -> list[Line2D]:
-        """Draw the work-precision diagram; see `pendcore.cost.figure.plot`.
+        """Draw time, or right-hand sides, against error; both axes logarithmic.
 
-        ``ax`` is a matplotlib axes; ``y`` is ``"time"`` or ``"nfev"``; the rest are properties of
-        matplotlib's ``Line2D``. The lines are returned, one per method.
+        Filled marks lie on the Pareto front: no other point is both more accurate and faster. In
+        the shaded region errors cannot be told apart, as the reference is uncertain by as much.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Default: a new figure of pyplot's, which is not shown.
+        y : {"time", "nfev"}
+            What is drawn upwards: the least time of a call, or right-hand sides.
+        **line_properties
+            Passed on to matplotlib's ``Line2D``.
+
+        Returns
+        -------
+        list of Line2D
+            One per method.
         """
         start, end = self.t_span
         title = f"{self.name or 'chain of links'}, {start:.4g} to {end:.4g} s"
@@ -141,7 +155,7 @@ class AccuracyCost:
         """Return everything as JSON can hold it: infinite numbers become None."""
         best = [(p.method, p.rtol, p.step) for p in self.pareto()]
         points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
-        plain: dict[str, Any] = _plain(asdict(self) | {"points": points})
+        plain: dict[str, Any] = as_json(asdict(self) | {"points": points})
         return plain
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
@@ -220,11 +234,3 @@ def _asked(error: float) -> float:
     if not asked > 0:
         raise ValueError(f"error = {asked!r}: must be > 0, a share of the total length")
     return asked
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(x) for key, x in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(x) for x in value]
-    return None if isinstance(value, float) and not isfinite(value) else value

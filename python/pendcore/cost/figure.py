@@ -27,33 +27,7 @@ def plot(
     y: str = "time",
     **line_properties: Any,
 ) -> list[Line2D]:
-    """Draw time, or right-hand sides, against error; both axes logarithmic.
-
-    Filled marks lie on the Pareto front: no other point is both more accurate and faster. In the
-    shaded region errors cannot be told apart, as the reference is uncertain by as much.
-
-    Parameters
-    ----------
-    points : sequence of Point
-        What to draw.
-    best : sequence of Point
-        The points on the Pareto front.
-    uncertainty : float
-        What the reference is uncertain by.
-    title : str
-        Above the axes.
-    ax : Axes, optional
-        Default: a new figure of pyplot's, which is not shown.
-    y : {"time", "nfev"}
-        What is drawn upwards: the least time of a call, or right-hand sides.
-    **line_properties
-        Passed on to matplotlib's ``Line2D``.
-
-    Returns
-    -------
-    list of Line2D
-        One per method.
-    """
+    """Draw points and their Pareto front, ``best``; see `AccuracyCost.plot`."""
     from matplotlib.axes import Axes
 
     if y not in ("time", "nfev"):

@@ -162,9 +162,6 @@ class HorizonWork:
         return figure
 
     def __repr__(self) -> str:
-        return str(self)
-
-    def __str__(self) -> str:
         lines = [f"how long the angles stay within {self.limit:g} rad"]
         lines.append(f"{'method':<8} {'rtol':>7} {'valid':>9} {'computing':>12}")
         for point in self.points:

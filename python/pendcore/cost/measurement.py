@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import platform
 import random
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf
+from pathlib import Path
 from statistics import median
 from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, Any
@@ -15,7 +17,6 @@ import numpy as np
 import pendcore as pc
 from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
-from pendcore.cost.machine import processor
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
 from pendcore.cost.runs import Start, has_error_estimate
@@ -36,36 +37,20 @@ PILOT: dict[str, Any] = {"rtol": 1e-6, "atol": 1e-9, "store": "end"}
 """A first loose run."""
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True)
 class Contender:
-    """A method at a tolerance or with a fixed step, and what was measured of it."""
+    """A method at a tolerance or with a fixed step: what its first call told, and all times, s."""
 
-    method: str
-    rtol: float | None = None
-    atol: float | None = None
-    step: float | None = None
-    error: float = inf
-    nfev: int = 0
-    accepted: int = 0
-    failure: str = ""
+    point: Point
     seconds: list[float] = field(default_factory=list)
 
-    @property
-    def text(self) -> str:
-        """The setting and all tighter ones, for people."""
-        how = f"steps of {self.step:.3g} s" if self.rtol is None else f"rtol {self.rtol:.3g}"
-        return f"{self.method} at {how} and below"
-
-    def point(self) -> Point:
+    def timed(self) -> Point:
         """Return the point that the result keeps."""
-        fine = not self.failure
-        return Point(
-            method=self.method, rtol=self.rtol, atol=self.atol, step=self.step,
-            error=self.error if fine else inf,
-            seconds=min(self.seconds) if fine else inf,
-            median=median(self.seconds) if fine else inf,
-            repeats=len(self.seconds), nfev=self.nfev, accepted=self.accepted,
-            failure=self.failure,
+        if self.point.failure:
+            return replace(self.point, error=inf, repeats=len(self.seconds))
+        return replace(
+            self.point, seconds=min(self.seconds), median=median(self.seconds),
+            repeats=len(self.seconds),
         )  # fmt: skip
 
 
@@ -108,7 +93,7 @@ class Measurement:
     def result(self) -> AccuracyCost:
         """Return what was measured; there are no points without a reference."""
         found = self.reference
-        tried = [c.point() for c in self.contenders if c.seconds or c.failure]
+        tried = [one.timed() for one in self.contenders if one.seconds]
         order = list(known_methods())
         tried.sort(key=lambda p: (order.index(p.method), -(p.rtol or 0.0), -(p.step or 0.0)))
         return AccuracyCost(
@@ -213,44 +198,48 @@ class Measurement:
                         ended.add(i)
             self.report(0.2 + 0.3 * (k + 1) / longest)
         untried = [next((x for x in row if not x.seconds), None) for row in rows]
-        missed = [x.text for i, x in enumerate(untried) if x is not None and i not in ended]
-        if missed:
+        left_out = [x.point for i, x in enumerate(untried) if x is not None and i not in ended]
+        if left_out:
+            missed = ", ".join(f"{one.method} at {one.setting} and below" for one in left_out)
             self.remarks.append(
-                f"the time limit was up before these were tried: {', '.join(missed)}; a larger "
+                f"the time limit was up before these were tried: {missed}; a larger "
                 f"time_limit than {self.time_limit:.3g} s includes them"
             )
 
     def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
         """Return whether halving a fixed step is over: it gained nothing, or is too dear."""
         assert self.reference is not None
-        one, before = row[-1], row[-2].error if len(row) > 1 else inf
+        one, before = row[-1].point, row[-2].point.error if len(row) > 1 else inf
         gained = one.error > 2 * self.reference.uncertainty
         # Errors above `KNOWN` may come from unstable steps, and need not fall yet.
         gained &= one.error < before / 2 or before > KNOWN
-        dear = sum(one.seconds) > allowed / self.repeats
+        dear = sum(row[-1].seconds) > allowed / self.repeats
         return one.step is not None and (dear or not gained)
 
     def _try(self, one: Contender, limit: float) -> None:
         assert self.reference is not None
-        solution, seconds = self._call(one, time_limit=limit)
-        one.nfev, one.accepted = solution.stats.nfev, solution.stats.accepted
-        one.seconds.append(seconds)
-        one.error = self.reference.error_of(solution)
+        solution, seconds = self._call(one.point, time_limit=limit)
+        error, failure = self.reference.error_of(solution), ""
         if not solution.success:
             too_long = f"took more than the {limit:.2g} s left for it of the time limit"
-            one.failure = too_long if solution.status == "time_limit" else solution.message
-        elif one.error == inf:
-            one.failure = "did not get to the end with finite angles"
+            failure = too_long if solution.status == "time_limit" else solution.message
+        elif error == inf:
+            failure = "did not get to the end with finite angles"
+        stats = solution.stats
+        one.point = replace(
+            one.point, error=error, nfev=stats.nfev, accepted=stats.accepted, failure=failure
+        )
+        one.seconds.append(seconds)
 
     def _repeat(self) -> None:
         """Time all in rounds, each round in an order drawn anew, until the time is up."""
-        fine = [one for one in self.contenders if not one.failure]
+        fine = [one for one in self.contenders if not one.point.failure]
         for number in range(1, self.repeats):
             random.Random(number).shuffle(fine)
             for one in fine:
                 if self._left() <= max(one.seconds[-1], 1e-3):
                     continue
-                one.seconds.append(self._call(one)[1])
+                one.seconds.append(self._call(one.point)[1])
             self.report(0.5 + 0.5 * number / self.repeats)
             if self._left() <= 1e-3:
                 break
@@ -260,7 +249,7 @@ class Measurement:
                 f"than {self.time_limit:.3g} s gives more"
             )
 
-    def _call(self, one: Contender, time_limit: float | None = None) -> tuple[pc.Solution, float]:
+    def _call(self, one: Point, time_limit: float | None = None) -> tuple[pc.Solution, float]:
         """Make the call that is timed."""
         start = self.start
         options = (
@@ -280,18 +269,16 @@ class Measurement:
         if self.methods is not None:
             return self.methods
         known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
-        return [name for name in known if self.start.is_supported_by(name, self._first_step(name))]
-
-    def _first_step(self, method: str) -> float | None:
-        return None if has_error_estimate(method) else 1e-3
+        steps = {name: None if has_error_estimate(name) else 1e-3 for name in known}
+        return [name for name, step in steps.items() if self.start.is_supported_by(name, step)]
 
     def _contenders_of(self, method: str) -> Iterator[Contender]:
         if has_error_estimate(method):
             for rtol, atol in self.tolerances:
-                yield Contender(method=method, rtol=rtol, atol=atol)
+                yield Contender(Point(method=method, rtol=rtol, atol=atol))
         else:
             for step in self.steps or self._halved_steps():
-                yield Contender(method=method, step=step)
+                yield Contender(Point(method=method, step=step))
 
     def _halved_steps(self) -> list[float]:
         """Return steps from twice those of a loose run on, halved down to a ten thousandth."""
@@ -302,3 +289,14 @@ class Measurement:
         span = abs(self.start.t_end - self.start.t_start)
         longest = span / max(1.0, np.ceil(loose.stats.accepted / 2))
         return [float(longest / 2**k) for k in range(14)]
+
+
+def processor() -> str:
+    """Return the processor, without which times mean nothing, as the kernel calls it."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return platform.processor() or platform.machine()
+    facts = dict(line.split(":", 1) for line in text.splitlines() if ":" in line)
+    names = {key.strip(): value.strip() for key, value in facts.items()}
+    return names.get("model name", platform.machine())

@@ -40,15 +40,15 @@ class Point:
     """
 
     method: str
-    rtol: float | None
-    atol: float | None
-    step: float | None
-    error: float
-    seconds: float
-    median: float
-    repeats: int
-    nfev: int
-    accepted: int
+    rtol: float | None = None
+    atol: float | None = None
+    step: float | None = None
+    error: float = inf
+    seconds: float = inf
+    median: float = inf
+    repeats: int = 0
+    nfev: int = 0
+    accepted: int = 0
     failure: str = ""
 
     @property

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,9 @@ from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
 from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
 
-_EPILOG = """
+HELP = "draw a number over a plane of starts or parameters, and which pixels are resolved"
+DESCRIPTION = "Run the case at every pixel of a map."
+EPILOG = """
 the case has a table
   [map]
   show = "first_event"     # or "largest_exponent", "energy_drift", "q[1]", "qd[2]" at the end
@@ -55,15 +56,8 @@ class Pixels:
     forbidden: int = 0
 
 
-def add_parser(commands: Any) -> None:
-    """Add the sub-command and its arguments."""
-    parser = commands.add_parser(
-        "map",
-        help="draw a number over a plane of starts or parameters, and which pixels are resolved",
-        description="Run the case at every pixel of a map.",
-        epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the sub-command."""
     parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
     parser.add_argument(
         "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
@@ -88,7 +82,6 @@ def add_parser(commands: Any) -> None:
         "--no-trust", action="store_true", help="leave out the second runs that confirm pixels"
     )
     parser.add_argument("--workers", type=int, metavar="N", help="threads; default: all processors")
-    parser.set_defaults(execute=execute)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -125,12 +118,12 @@ def _asked_for(table: MapTable, args: argparse.Namespace) -> MapTable:
     if args.count is not None:
         if args.count < 2:
             raise UsageError(f"--count = {args.count}: must be 2 or more pixels")
-        x, y = x.with_count(args.count), y.with_count(args.count)
+        x, y = (replace(axis, count=args.count) for axis in (x, y))
     if args.zoom is not None:
         x0, x1, y0, y1 = args.zoom
         if not (x0 < x1 and y0 < y1):
             raise UsageError(f"--zoom {x0:g} {x1:g} {y0:g} {y1:g}: X0 < X1 and Y0 < Y1 are needed")
-        x, y = x.across(x0, x1), y.across(y0, y1)
+        x, y = replace(x, start=x0, stop=x1), replace(y, start=y0, stop=y1)
     if x.count * y.count > MOST_PIXELS:
         raise UsageError(f"{x.count:,} x {y.count:,} pixels: must be at most {MOST_PIXELS:,}")
     if args.refine < 0:
@@ -160,27 +153,16 @@ def _computed(
     """Return the pixels, and a complaint if they are not all there."""
     shape = (table.x.count, table.y.count)
     pixels = Pixels(np.full(shape, np.nan), np.zeros(shape, bool), np.zeros(shape, bool))
-    trusted = {"now": np.empty(0, dtype=bool)}
 
-    def compute(level: tuple[int, int], wanted: Mask) -> Floats:
-        x, y = (one.with_count(size) for one, size in zip((table.x, table.y), level, strict=True))
+    def compute(level: tuple[int, int], wanted: Mask) -> tuple[Floats, Mask]:
+        x, y = (replace(table.x, count=level[0]), replace(table.y, count=level[1]))
         i, k = np.nonzero(wanted)
-        values, trusted["now"] = _run(case, table, reducer, x.values[i], y.values[k], pixels, args)
-        return values
+        return _run(case, table, reducer, x.values[i], y.values[k], pixels, args)
 
-    resolved = np.empty((0, 0), dtype=bool)
     complaint = ""
     try:
-        for values, wanted in refined(shape, args.refine, compute):
-            if resolved.size:
-                resolved = resolved.repeat(2, axis=0).repeat(2, axis=1)
-            else:
-                resolved = np.zeros(values.shape, dtype=bool)
-            resolved[wanted] = trusted["now"]
-            factor = shape[0] // values.shape[0]
-            pixels.values = values.repeat(factor, axis=0).repeat(factor, axis=1)
-            pixels.resolved = resolved.repeat(factor, axis=0).repeat(factor, axis=1)
-            pixels.computed = wanted.repeat(factor, axis=0).repeat(factor, axis=1)
+        for found in refined(shape, args.refine, compute):
+            pixels.values, pixels.resolved, pixels.computed = found
     except KeyboardInterrupt:
         complaint = "interrupted: the map has what was computed before"
     return pixels, complaint

@@ -29,23 +29,25 @@ def levels_of(shape: tuple[int, int], levels: int) -> list[tuple[int, int]]:
 
 
 def refined(
-    shape: tuple[int, int], levels: int, compute: Callable[[tuple[int, int], Mask], Floats]
-) -> Iterator[tuple[Floats, Mask]]:
-    """Yield the map at each level, and which of its pixels were computed.
+    shape: tuple[int, int],
+    levels: int,
+    compute: Callable[[tuple[int, int], Mask], tuple[Floats, Mask]],
+) -> Iterator[tuple[Floats, Mask, Mask]]:
+    """Yield the map after each level: its values, which are resolved, and which were computed.
 
-    ``compute`` gets the shape of a level and a mask of its pixels, and returns their values in the
-    order of the mask.
+    ``compute`` gets the shape of a level and a mask of its pixels, and returns, in the order of the
+    mask, their values and which of them are resolved.
     """
-    values: Floats = np.empty((0, 0))
-    wanted: Mask = np.ones(levels_of(shape, levels)[0], dtype=bool)
-    for level in levels_of(shape, levels):
-        if values.size:
-            wanted = _fourfold(_differs(values))
-            values = _fourfold(values)
-        else:
-            values = np.full(level, np.nan)
-        values[wanted] = compute(level, wanted)
-        yield values, wanted
+    coarsest, *finer = levels_of(shape, levels)
+    wanted = np.ones(coarsest, dtype=bool)
+    values, resolved = np.full(coarsest, np.nan), np.zeros(coarsest, dtype=bool)
+    for level in (coarsest, *finer):
+        if level != coarsest:
+            wanted = _enlarged(_differs(values))
+            values, resolved = _enlarged(values), _enlarged(resolved)
+        values[wanted], resolved[wanted] = compute(level, wanted)
+        factor = shape[0] // level[0]
+        yield _enlarged(values, factor), _enlarged(resolved, factor), _enlarged(wanted, factor)
 
 
 def _differs(values: Floats) -> Mask:
@@ -76,5 +78,5 @@ def _colours(values: Floats) -> Floats:
     return shares
 
 
-def _fourfold(pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    return pixels.repeat(2, axis=0).repeat(2, axis=1)
+def _enlarged(pixels: npt.NDArray[Any], factor: int = 2) -> npt.NDArray[Any]:
+    return pixels.repeat(factor, axis=0).repeat(factor, axis=1)

@@ -1,14 +1,7 @@
 """The table [map] of a case file: which two numbers span the map, and what it shows.
 
-::
-
-    [map]
-    show = "first_event"    # or "largest_exponent", "energy_drift", "q[1]", "qd[2]" at the end
-    x = {name = "q0_deg[1]", start = -180, stop = 180, count = 300}
-    y = {name = "q0_deg[2]", start = -180, stop = 180, count = 300}
-
 A name is that of a parameter (`Scene.parameters`), or of an angle or rate at the start: ``q0[1]``,
-``q0_deg[1]``, ``qd0[2]``. With ``first_event``, the event is the first one of the case.
+``q0_deg[1]``, ``qd0[2]``. `pendcore map --help` shows a table.
 """
 
 from __future__ import annotations
@@ -42,14 +35,6 @@ class MapAxis:
         width = (self.stop - self.start) / self.count
         from_middle = np.arange(self.count) - 0.5 * (self.count - 1)
         return np.asarray(0.5 * (self.start + self.stop) + width * from_middle, dtype=np.float64)
-
-    def across(self, start: float, stop: float) -> MapAxis:
-        """Return the same number of pixels between other ends."""
-        return MapAxis(self.name, start, stop, self.count)
-
-    def with_count(self, count: int) -> MapAxis:
-        """Return another number of pixels between the same ends."""
-        return MapAxis(self.name, self.start, self.stop, count)
 
 
 @dataclass(frozen=True, slots=True)

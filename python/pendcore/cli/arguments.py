@@ -1,4 +1,4 @@
-"""The argument of commands that take a case or a saved solution."""
+"""The arguments that several commands take: a case, a saved solution, a folder."""
 
 from __future__ import annotations
 
@@ -6,9 +6,26 @@ import argparse
 import sys
 from pathlib import Path
 
-from pendcore import AccuracyError, Solution, load
-from pendcore.cli.case_and_folder import case_of
+from pendcore import AccuracyError, Case, Solution, load, read_case
 from pendcore.cli.usage import UsageError
+
+
+def add_case_and_folder(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments for the case and the folder."""
+    parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help="what to simulate")
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
+    )
+
+
+def case_of(args: argparse.Namespace) -> Case:
+    """Return the case that was named, or the textbook's."""
+    return Case.textbook() if args.case is None else read_case(args.case)
+
+
+def folder_of(args: argparse.Namespace) -> Path:
+    """Return the folder that was named, or one named after the case."""
+    return args.out or Path("out", args.case.stem if args.case else "textbook")
 
 
 def add_case_or_solution(parser: argparse.ArgumentParser) -> None:
