@@ -62,8 +62,11 @@ class FromDefect:
     share: float
     errors: tuple[float, float]
     series_are_expensive: bool = False
-    first_aim: ClassVar[float] = FIRST_BY_DEFECT
     serves_every_trial: ClassVar[bool] = False
+
+    @property
+    def first_aim(self) -> float:
+        return FIRST_BY_DEFECT
 
     def serves(self, start: Start, error: float) -> bool:
         """Whether it is tried for an error of a smooth scene."""

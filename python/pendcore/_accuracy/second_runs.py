@@ -39,8 +39,11 @@ class SecondRuns:
     """The strategy that serves every scene."""
 
     method = ""
-    first_aim = FIRST
     serves_every_trial = True
+
+    @property
+    def first_aim(self) -> float:
+        return FIRST
 
     def correction(self, start: Start, scale: float) -> None:
         """Its trials are made without."""
