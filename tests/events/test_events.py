@@ -57,21 +57,24 @@ def test_roots_in_one_step_or_at_its_ends_are_found_once_each(method, step, back
     """The angle is -1/2 at 0.5 and 1: both in one step, each at the end of a step, or anywhere."""
     span = (2.0, 0.0) if backward else (0.0, 2.0)
     wanted = [ev.LinkAngle(1, -0.5), ev.JointAngle(1, -0.5), *RATES]
-    wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, samples=16)]
-    wanted += [ev.TipLine((np.cos(0.5), -np.sin(0.5)), (np.sin(0.5), np.cos(0.5)))]
-    first, second, joint, rate, own, tip = parabola(span, step, method, *wanted).events
+    wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, **how) for how in ({"samples": 16}, {})]
+    normals = {1: [(np.sin(0.5), np.cos(0.5)), (-0.18, 1.0)], -1: [(-0.3, -0.2)]}
+    point = (np.cos(0.5), -np.sin(0.5))
+    wanted += [ev.TipLine(point, normal) for some in normals.values() for normal in some]
+    first, second, joint, rate, own, usual, *tips = parabola(span, step, method, *wanted).events
     exact = [1.0, 0.5] if backward else [0.5, 1.0]
     fastest, there = 2.5, 0.5
     rounding = STEPS.get(method, 0.0) * 2.0 + WITHIN_STEPS.get(method, 0.0) * step
     last_bits = max(4e-15, rounding * fastest / there)
-    for found in (first, second, own):
+    for found in (first, second, own, usual):
         assert times(found) == pytest.approx(exact, abs=last_bits)
         assert directions(found) == [-1, 1]
         for one in found:
             assert one.q[0] == pytest.approx(-0.5, abs=2e-15)
             assert one.qd[0] == pytest.approx(2 * one.t - 1.5, abs=max(2e-15, 2 * rounding))
-    assert times(tip) == pytest.approx(exact, abs=max(1e-14, last_bits))
-    assert directions(tip) == [-1, 1]
+    for tip, side in zip(tips, (1, 1, -1), strict=True):
+        assert times(tip) == pytest.approx(exact, abs=max(1e-14, last_bits))
+        assert directions(tip) == [-side, side]
     assert times(rate) == times(joint) == pytest.approx([0.75], abs=max(1e-15, rounding))
     assert directions(rate) == [-1 if backward else 1]
 

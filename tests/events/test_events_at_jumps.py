@@ -180,6 +180,27 @@ def test_a_jump_over_more_turns_than_an_int_holds_ends_the_run_in_words():
 # Backward ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_elastic_impacts_are_events_on_the_way_back_too(sign, fine):
+    """The rod strikes after T = sqrt 0.4, 3 T, 5 T, ... and is highest after 2 T, 4 T, ...
+
+    It passes 0.3 when T/2 from its highest points. Backward, it falls with a positive rate.
+    """
+    watched = [ev.JointAngle(1, 0.0), ev.RateZero(joint=1), ev.JointAngle(1, 0.3)]
+    sol = pc.simulate(dropped(1.0), (0, sign * 6.2), 0.4, events=watched, **fine)
+    touches, zeros, passed = sol.events
+    assert times(touches) == pytest.approx(sign * FALL * np.arange(1, 10, 2), abs=1e-10)
+    assert times(zeros) == pytest.approx(sign * FALL * np.arange(1, 10), abs=1e-10)
+    assert times(passed) == pytest.approx(sign * FALL * np.arange(0.5, 10), abs=1e-10)
+    for one in [*touches, *zeros[::2]]:
+        np.testing.assert_allclose(one.y_before, [0, -sign * SPEED], atol=1e-9)
+        np.testing.assert_allclose(one.y_after, [0, sign * SPEED], atol=1e-9)
+    assert [one.direction for one in touches] == [-1] * 5  # along the run
+    assert [one.direction for one in zeros] == [sign, -sign] * 4 + [sign]
+    assert [one.direction for one in passed] == [-1, 1] * 5
+    assert all(one.y_before is one.y_after is None for one in zeros[1::2])
+
+
 def test_what_elastic_impacts_of_a_chain_are_found_backward_is_found_of_its_mirror(fine):
     stops = [fx.JointStop(joint=j, range=(-0.4, 0.3), restitution=1.0) for j in (2, 3)]
     scene = rod(*stops, links=3, gravity=9.81)
