@@ -122,6 +122,7 @@ Result by_classical_4(const Request& request) {
   const Limits limits{.t_end = request.t_end, .fixed_step = true, .monitor = {}};
   Nothing nothing;
   const Ending ending = integrate(stepper, integrator, resumable, limits, nothing);
+  CHECK(ending.bad == (ending.status == Status::non_finite ? 0 : -1));  // the only component
   return {ending.status, integrator.t.high, integrator.y[0], integrator.statistics, ""};
 }
 
