@@ -10,6 +10,7 @@ from pendcore import _core
 from pendcore import effects as fx
 from pendcore import events as ev
 from reference.rounding import of_dense_output, of_new_state
+from turning_rod import directions, times, turning
 from unit_rods import rod
 
 METHODS = [method["name"] for method in _core.methods()]
@@ -24,19 +25,6 @@ RATES = [ev.RateZero(joint=1), ev.RateZero(link=1)]
 # are some hundreds.
 STEPS = dict.fromkeys(["dop853", "dop853-radau5"], of_new_state("dop853"))
 WITHIN_STEPS = dict.fromkeys(STEPS, of_dense_output("dop853"))
-
-
-def times(found):
-    return [one.t for one in found]
-
-
-def directions(found):
-    return [one.direction for one in found]
-
-
-def turning(rate, span, events, q0=0.0, **how):
-    """A rod that nothing turns."""
-    return pc.simulate(rod(), span, q0, rate, events=events, **how)
 
 
 def parabola(span, step, method, *wanted):

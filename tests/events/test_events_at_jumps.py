@@ -8,6 +8,7 @@ import pendcore as pc
 import pytest
 from pendcore import effects as fx
 from pendcore import events as ev
+from turning_rod import directions, times
 from unit_rods import rod
 
 inf = np.inf
@@ -20,10 +21,6 @@ def dropped(e):
 
 
 FALL, SPEED = np.sqrt(0.4), 2 * np.sqrt(0.4)
-
-
-def times(found):
-    return [one.t for one in found]
 
 
 # Impacts ----------------------------------------------------------------------------------------
@@ -195,9 +192,9 @@ def test_elastic_impacts_are_events_on_the_way_back_too(sign, fine):
     for one in [*touches, *zeros[::2]]:
         np.testing.assert_allclose(one.y_before, [0, -sign * SPEED], atol=1e-9)
         np.testing.assert_allclose(one.y_after, [0, sign * SPEED], atol=1e-9)
-    assert [one.direction for one in touches] == [-1] * 5  # along the run
-    assert [one.direction for one in zeros] == [sign, -sign] * 4 + [sign]
-    assert [one.direction for one in passed] == [-1, 1] * 5
+    assert directions(touches) == [-1] * 5  # along the run
+    assert directions(zeros) == [sign, -sign] * 4 + [sign]
+    assert directions(passed) == [-1, 1] * 5
     assert all(one.y_before is one.y_after is None for one in zeros[1::2])
 
 
@@ -260,7 +257,7 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine):
     assert sol.qd[-1, 0] > 0.1  # the rod left again, one turn of the push after the first time
     rests, touches = sol.events
     assert times(rests) == pytest.approx([*turns, back], abs=1e-10)
-    assert [found.direction for found in rests] == [-1, 1, -1, 1]
+    assert directions(rests) == [-1, 1, -1, 1]
     assert times(touches) == [rests[-1].t]
     assert touches[0].y_after.tolist() == [0.0, 0.0]
 
