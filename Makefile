@@ -45,7 +45,7 @@ test-all: lint tidy build-bench page $(DONE)/test-requirements $(DONE)/fuzz-requ
 	@sh setup/debian_packages.sh octave pandoc ffmpeg chromium
 	$(CPP_TESTS)
 	$(PYTEST) --full
-	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000
+	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000 CONTRACTED=--contracted
 
 # Where these are missing, tests that compare with them are skipped.
 references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs what tests compare pendcore with
@@ -108,7 +108,7 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 MACHINES ?= aarch64 riscv64 s390x wasm32 clang
 elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/background/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
-	python tests/elsewhere/elsewhere.py $(MACHINES) $(PAGE:%=--page %)
+	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
 	$(if $(filter wasm32,$(MACHINES)),PENDCORE_TEST_JAVASCRIPT=1 $(PYTEST) --full tests/elsewhere)
 
 wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/how_to/webassembly.md

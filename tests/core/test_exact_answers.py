@@ -6,6 +6,7 @@ Two equal uniform rods of mass M and length L hang on a fixed pivot, unless a te
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import mpmath  # type: ignore[import-untyped]
 import numpy as np
@@ -27,12 +28,18 @@ def rods(*masses: float) -> pc.Scene:
 
 
 TWO, ONE = rods(M, M), rods(M)
+PASSES_DOWN = [pc.events.LinkAngle(link, DOWN) for link in (1, 2)]
 
 
 def solve(
-    scene: pc.Scene, q: ArrayLike, qd: ArrayLike, t_end: float, tolerance: float = 1e-13
+    scene: pc.Scene,
+    q: ArrayLike,
+    qd: ArrayLike,
+    t_end: float,
+    tolerance: float = 1e-13,
+    **more: Any,
 ) -> pc.Solution:
-    sol = pc.simulate(scene, (0.0, t_end), q, qd, rtol=tolerance, atol=1e-2 * tolerance)
+    sol = pc.simulate(scene, (0.0, t_end), q, qd, rtol=tolerance, atol=1e-2 * tolerance, **more)
     assert sol.success
     return sol
 
@@ -52,9 +59,13 @@ def test_modes_have_their_frequencies_hanging_and_as_growth_rates_upright(square
     w, amplitude = np.sqrt(square * G / L), 1e-5
     shape = np.array([1.0, 3 / square - 8 / 3])  # (K - w^2 M) x = 0 with w^2 = square g/L
     t = np.linspace(0, 20 / w, 200)
-    swing = solve(TWO, DOWN + amplitude * shape, 0.0, t[-1])(t)[:2] - DOWN
+    sol = solve(TWO, DOWN + amplitude * shape, 0.0, t[-1], events=PASSES_DOWN)
+    swing = sol(t)[:2] - DOWN
     # The linear answer leaves out the square of the amplitude, times the twenty radians.
     assert_allclose(swing / amplitude, np.outer(shape, np.cos(w * t)), rtol=0, atol=1e-7)
+    for found in sol.events:  # the angles pass the vertical at the frequency
+        times = w * np.array([one.t for one in found])
+        assert_allclose(times, np.pi * (np.arange(6) + 0.5), rtol=0, atol=1e-7)
     t, start = np.linspace(0, 4 / w, 50), amplitude * shape
     fall = solve(TWO, UPRIGHT + start, w * start, t[-1])(t)[:2] - UPRIGHT
     assert_allclose(fall / np.outer(start, np.exp(w * t)), 1, rtol=0, atol=1e-5)

@@ -37,6 +37,14 @@ const std::vector<Scene> of_two_links = {
     {.links = rods, .effects = {Lock{.joint = 1}}},
     {.links = rods, .effects = {Lock{.joint = 2}}}};
 
+/// Laws with corners, which no kernel for three states has: |w| w, drag and Stribeck's friction.
+const Scene of_corners{
+    .links = rods,
+    .effects = {
+        ViscousJoint{.joint = 2, .damping = 0.3, .damping2 = 0.2},
+        RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.1, .wind = {3, 1}},
+        DryJointFriction{.joint = 1, .coulomb = 0.3, .static_ = 0.6, .stribeck_velocity = 0.5}}};
+
 bool are_same(double a, double b) {
   return std::bit_cast<long long>(a) == std::bit_cast<long long>(b);
 }
@@ -118,7 +126,9 @@ TEST_CASE("three states at once have the bits of each state alone" *
 
 TEST_CASE("the Jacobian has the bits of each direction alone, beside those of the rates") {
   Random any(10, 4.0);
-  for (const Scene& scene : of_two_links) {
+  std::vector<Scene> scenes = of_two_links;
+  scenes.push_back(of_corners);
+  for (const Scene& scene : scenes) {
     const EquationsOfMotion equations = equations_of_motion(scene);
     const RightHandSide rates = right_hand_side(equations);
     const Jacobian jacobian(scene, equations_of_motion(scene));

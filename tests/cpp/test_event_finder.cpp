@@ -27,8 +27,8 @@ struct Turning {
     stepper->interpolant(1.0, rows.data());
     stepper->get_new_state(end);
   }
-  StepEnd look(EventFinder& finder) {
-    return finder.look(*stepper, rows.data(), {0.0, 0.0}, 1.0, 1.0);
+  StepEnd look(EventFinder& finder, double t = 0.0) {
+    return finder.look(*stepper, rows.data(), {t, 0.0}, 1.0, t + 1.0);
   }
 };
 
@@ -66,6 +66,54 @@ TEST_CASE("a jump through zero is an event with the states on both sides") {
   CHECK(found[2].event == 0);  // the rate falls, so this is not event 1
   CHECK(found[3].event == 4);
   CHECK(found[2].direction == -1);
+}
+
+TEST_CASE("a jump into zero is an event, and a jump from zero is not") {
+  Turning turning;
+  const std::vector<Event> events = {{.function = events::RateZero{.joint = 1, .link = {}}}};
+  std::vector<FoundEvent> found;
+  EventFinder finder(turning.scene, events, found, {}, 0.0);
+  turning.look(finder);
+  CHECK(found.empty());
+  const double moves[] = {1.0, 1.0}, rests[] = {1.0, 0.0};
+  finder.jump(1.0, moves, rests);
+  CHECK(found.size() == 1);
+  finder.jump(1.0, rests, moves);
+  CHECK(found.size() == 1);
+}
+
+TEST_CASE("a jump may end the run, once") {
+  Turning turning;
+  const std::vector<Event> events = {
+      {.function = events::RateZero{.joint = 1, .link = {}}, .terminal = 1}};
+  const double before[] = {1.0, 1.0}, after[] = {1.0, -1.0};
+  for (const long long passed : {0, 1}) {
+    std::vector<FoundEvent> found;
+    EventFinder finder(turning.scene, events, found, {passed}, 0.0);
+    CHECK(finder.may_end());
+    turning.look(finder);
+    finder.jump(1.0, before, after);
+    CHECK(finder.ended_by() == (passed == 0 ? 0 : -1));
+    CHECK(found.size() == 1);
+  }
+}
+
+TEST_CASE(
+    "a step begins with the value at the end of the one before, and calls no function there") {
+  Turning turning;
+  int calls = 0;
+  const auto clock = [&calls](double t, auto, auto) {
+    ++calls;
+    return t - 0.5;
+  };
+  const std::vector<Event> events = {{.function = events::Function{.f = clock, .samples = 1}}};
+  std::vector<FoundEvent> found;
+  EventFinder finder(turning.scene, events, found, {}, -2.0);
+  turning.look(finder, -1.0);
+  CHECK(calls == 2);
+  turning.look(finder);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].t == 0.5);
 }
 
 TEST_CASE("an event within rounding of the start of a run is not armed, and elsewhere it is") {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <string_view>
+#include <string>
 #include <vector>
 
+#include "integrate/loop/integrate.hpp"
 #include "integrate/method_list.hpp"
 #include "integrate/runge_kutta/runge_kutta_fixed.hpp"
 #include "pendcore/pendcore.hpp"
@@ -43,6 +43,7 @@ struct Result {
   double t;
   double y;
   Statistics statistics;
+  std::string message;
 };
 
 Result solve(const MethodInfo& method, double (*f)(double, double), const Request& request) {
@@ -56,7 +57,7 @@ Result solve(const MethodInfo& method, double (*f)(double, double), const Reques
   options.max_steps = request.max_steps;
   if (request.step > 0.0) options.step = request.step;
   const Solution run = simulate(scene, {0.0}, {request.y0}, request.t0, request.t_end, options);
-  return {run.status, run.t_reached, run.y_reached[1], run.statistics};
+  return {run.status, run.t_reached, run.y_reached[1], run.statistics, run.message};
 }
 
 /// Calls a check with each method but the series, which only the core's own effects have.
@@ -92,25 +93,37 @@ constexpr Tableau<4, 3> classical_4 = {
                      {{{2, 3}, {-2, 3}, {-2, 3}, {2, 3}}}}},
 };
 
-/// `growing` in one component.
-struct Growing {
+/// dy/dt = f(t, y) in one component.
+template <double (*f)(double, double)>
+struct Scalar {
   using Block = double;
   static constexpr int blocks = 1;
   PENDCORE_INLINE void operator()(double t, const double* y, double* dydt) const {
-    dydt[0] = growing(t, y[0]);
+    dydt[0] = f(t, y[0]);
   }
 };
 
-double by_classical_4(double t_end, double h) {
-  RungeKuttaFixed<classical_4, Growing> stepper{Growing{}};
-  double y = 1.0, dydt = 1.0;
-  stepper.start(&y, &dydt);
-  for (int i = 0; i < std::lround(t_end / h); ++i) {
-    stepper.attempt({i * h}, h, 1.0);
-    stepper.accept((i + 1) * h);
-  }
-  stepper.get_state(&y);
-  return y;
+class Nothing final : public Observer {
+ public:
+  StepEnd step_accepted(StepOutput&, const TwoDouble&, double, double) override { return {}; }
+  void state_jumped(double, const double*, const double*) override {}
+  void restarts_here() override {}
+};
+
+template <double (*f)(double, double)>
+Result by_classical_4(const Request& request) {
+  RungeKuttaFixed<classical_4, Scalar<f>> stepper{Scalar<f>{}};
+  IntegratorState integrator, resumable;
+  integrator.t = {request.t0, 0.0};
+  integrator.h = request.step;
+  integrator.y = {request.y0};
+  integrator.dydt = {f(request.t0, request.y0)};
+  stepper.start(integrator.y.data(), integrator.dydt.data());
+  const Limits limits{.t_end = request.t_end, .fixed_step = true, .monitor = {}};
+  Nothing nothing;
+  const Ending ending = integrate(stepper, integrator, resumable, limits, nothing);
+  CHECK(ending.bad == (ending.status == Status::non_finite ? 0 : -1));  // the only component
+  return {ending.status, integrator.t.high, integrator.y[0], integrator.statistics, ""};
 }
 
 void check_order(int order, const std::function<double(double)>& error) {
@@ -132,7 +145,9 @@ TEST_CASE("the error falls with the order of the method, time-dependent rates in
       return std::abs(solve(method, growing, request).y - exact);
     });
   });
-  check_order(4, [&](double h) { return std::abs(by_classical_4(2.0, h) - exact); });
+  check_order(4, [&](double h) {
+    return std::abs(by_classical_4<growing>({.t_end = 2.0, .step = h}).y - exact);
+  });
 }
 
 TEST_CASE("class A of DETEST ends within ten tolerances of its closed forms, or thirty") {
@@ -181,6 +196,7 @@ TEST_CASE("a rate that is not a number is never accepted") {
     CHECK(from_one.t <= 1.0);
     CHECK(from_one.t == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(from_one.y == doctest::Approx(2.0).epsilon(1e-9));
+    CHECK(from_one.message.find(", qd_1, by effect 1 (compiled_user)") != std::string::npos);
     const Result infinite = solve(method, infinite_from_one, {.t_end = 2.0});
     CHECK(infinite.status == Status::non_finite);
     CHECK(infinite.t == doctest::Approx(1.0).epsilon(1e-9));
@@ -198,17 +214,22 @@ TEST_CASE("a rate that is not a number is never accepted") {
 }
 
 TEST_CASE("a fixed step that is not finite, or too short for its time, ends the run") {
-  for_each_method([](const MethodInfo& method) {
-    const Result result = solve(method, undefined_from_one, {.t_end = 2.0, .step = 0.125});
+  const auto check = [](const Result& result, const Result& infinite, const Result& late) {
     CHECK(result.status == Status::non_finite);
     CHECK(result.t < 1.0);
-    const Result infinite = solve(method, infinite_from_one, {.t_end = 2.0, .step = 0.125});
     CHECK(infinite.status == Status::non_finite);
     CHECK(std::isfinite(infinite.y));
-    const Result late = solve(method, growing, {.t0 = 1e17, .t_end = 1e17 + 1e6, .step = 0.01});
     CHECK(late.status == Status::step_too_small);
     CHECK(late.t == 1e17);
+  };
+  const Request request{.t_end = 2.0, .step = 0.125};
+  const Request late{.t0 = 1e17, .t_end = 1e17 + 1e6, .step = 0.01};
+  for_each_method([&](const MethodInfo& method) {
+    check(solve(method, undefined_from_one, request), solve(method, infinite_from_one, request),
+          solve(method, growing, late));
   });
+  check(by_classical_4<undefined_from_one>(request), by_classical_4<infinite_from_one>(request),
+        by_classical_4<growing>(late));
 }
 
 TEST_CASE("the cap on steps is exact") {

@@ -12,13 +12,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-
-M, L, G = 1.7, 0.6, 9.81
-J = M * L**2 / 3
-
-
-def rod(*effects: Any, gravity: float = 0.0) -> pc.Scene:
-    return pc.Scene(links=[pc.Link(mass=M, length=L)], gravity=gravity, effects=list(effects))
+from test_effect_answers import J, rod
 
 
 def friction(coulomb: float, static: float, velocity: float, exponent: float) -> Any:

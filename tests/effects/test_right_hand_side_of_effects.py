@@ -26,7 +26,7 @@ from reference.effects.torsional_spring import TorsionalSpring
 from reference.instant import Instant
 from reference.newton_euler import Body
 from reference.random_rigs import START, DrawnRig, rigs
-from reference.rig import Rig
+from reference.rig import Rig, balance
 
 TOLERANCE = 1e-12
 FORTY, FIFTY = multiple_precision(40), multiple_precision(50)
@@ -147,7 +147,7 @@ def test_many_instants_at_once(n: int) -> None:
 
 # The reference itself ---------------------------------------------------------------------------
 
-S = FIFTY.number("1e-13")
+S, TINY = FIFTY.number("1e-13"), 1e-18
 
 
 def slope(f: Callable[[Number], Number]) -> Number:
@@ -159,13 +159,32 @@ def plus(values: list[Number], s: Number, direction: Sequence[Number]) -> list[N
     return [x + s * d for x, d in zip(values, direction, strict=True)]
 
 
-def check_lagrange(drawn: DrawnRig) -> None:
-    """d/dt dT/dqd_i - dT/dq_i + dV/dq_i is the generalised force of q_i, for every link i."""
+def exact_rig(drawn: DrawnRig) -> tuple[Rig, Number, list[Number], list[Number]]:
+    """Return the rig, the time, the angles and the rates in fifty digits."""
     bodies, gravity, described, state = drawn
     laws = [law(one) for one in described]
     rig = Rig(bodies=bodies, gravity=gravity, effects=laws, arithmetic=FIFTY)
-    t = FIFTY.number(state[0])
     q, qd = ([FIFTY.number(x) for x in values] for values in state[1:])
+    return rig, FIFTY.number(state[0]), q, qd
+
+
+def check_power(drawn: DrawnRig) -> None:
+    """The energy grows as fast as the entries of the ledger say."""
+    rig, t, q, qd = exact_rig(drawn)
+    qdd = rig.motion(t, q, qd).accelerations
+
+    def total(s: Number) -> Number:
+        moved = plus(plus(q, s, qd), s * s / 2, qdd)
+        return sum(rig.energy(t + s, moved, plus(qd, s, qdd)))
+
+    shares = rig.shares(t, q, qd)
+    size = 1 + sum(abs(power) for power in shares.values())
+    assert abs(slope(total) - balance(shares)) < TINY * size
+
+
+def check_lagrange(drawn: DrawnRig) -> None:
+    """d/dt dT/dqd_i - dT/dq_i + dV/dq_i is the generalised force of q_i, for every link i."""
+    rig, t, q, qd = exact_rig(drawn)
     motion, loads = rig.motion(t, q, qd), rig.loads(rig.instant(t, q, qd))
     # A spring's couple is among the loads: it must not count twice.
     others = [effect for effect in rig.effects if not isinstance(effect, TorsionalSpring)]
@@ -191,13 +210,17 @@ def check_lagrange(drawn: DrawnRig) -> None:
             center = alone.mass_center(link)
             force += fx.value * center.vx + fy.value * center.vy
         left = slope(lambda s, i=i: momentum(i, s)) - slope(lambda s, i=i: lagrangian(i, s))
-        assert abs(left - force) < 1e-18 * (1 + loads.couples[i].size)
+        assert abs(left - force) < TINY * (1 + loads.couples[i].size)
 
 
 @pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [*KINDS, "all"])
 @settings(max_examples=10, deadline=None)
 @given(data=st.data())
-def test_newton_and_euler_agree_with_lagrange(kind: str, data: st.DataObject) -> None:
-    kinds = KINDS if kind == "all" else [kind]
-    check_lagrange(data.draw(rigs(kinds, st.sampled_from([1, 2, 3, 5]))))
+def test_newton_and_euler_agree_with_lagrange_and_with_the_growth_of_the_energy(
+    kind: str, data: st.DataObject
+) -> None:
+    kinds, links = KINDS if kind == "all" else [kind], st.sampled_from([1, 2, 3, 5])
+    check_lagrange(data.draw(rigs(kinds, links)))
+    check_power(data.draw(rigs(kinds, links)))
+    check_power(data.draw(rigs(sorted({*kinds, "driven_pivot"}), links)))

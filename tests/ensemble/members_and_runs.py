@@ -7,11 +7,18 @@ from collections.abc import Callable
 import numpy as np
 import pendcore as pc
 import pytest
+from compiled_functions import FORCES
 
 E = pc.effects
 BOOK = pc.Scene.textbook()
 WAVE = E.Sinusoid(3.0, 6.0, 0.4)
 DRAG = {"drag_coefficient": 1.2, "diameter": 0.2}
+
+
+@FORCES
+def damping_that_jumps(t, n, q, qd, forces, data):
+    for i in range(n):
+        forces[i] -= (0.1 if t < 0.5 else 0.4) * qd[i]
 
 
 def pivot(x: tuple[float, ...] = (), y: tuple[float, ...] = ()) -> E.Effect:
@@ -78,6 +85,10 @@ SWITCHING: dict[str, Callable[[int], list[E.Effect]]] = {
     "a table": lambda n: [E.Motor(1, table=E.Table([0.0, 1.0, 4.0], [0.0, 1.0, -1.0]))],
     "a table that holds": lambda n: [E.Motor(1, table=E.Table([0, 0.4, 4], [1, -2, 7], hold=True))],
     "a function": lambda n: [E.User(lambda t, q, qd: -0.1 * qd)],
+    "a function that jumps": lambda n: [
+        E.User(lambda t, q, qd: (-0.1 if t < 0.5 else -0.4) * qd, breaks=[0.5]),
+    ],
+    "a compiled function": lambda n: [E.CompiledUser(damping_that_jumps, breaks=[0.5])],
 }
 ALL = EFFECTS | SWITCHING
 

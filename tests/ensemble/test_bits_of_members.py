@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from members_and_runs import ALL, assert_runs, chain
+from members_and_runs import ALL, assert_runs, chain, starts
 
 SCENES = {
     "textbook": pc.Scene.textbook(),
@@ -25,10 +25,10 @@ SCENES = {
         f"{n}, {name}": chain(n, name)
         for n, names in {
             1: ["bare", "one wave", "a table that holds"],
-            2: [name for name in ALL if name != "a function"],
+            2: ALL,
             3: ["bare", "waves and damping", "rotors and damping", "all rows of joints"],
             4: ["a rotor between links", "a spring and the cube of a rate"],
-            5: ["bare", "a function"],
+            5: ["bare", "a function that jumps"],
             8: ["a rotor between links"],
         }.items()
         for name in names
@@ -83,10 +83,18 @@ def test_threads_and_chunks_change_no_bit(name, method, tmp_path):
     assert found(**store) == expected
 
 
+@pytest.mark.parametrize("name", ["a function", "a function that jumps", "a compiled function"])
+def test_members_under_functions_are_single_runs(name):
+    for n in (1, 3):
+        for method in ("dopri5", "radau5"):
+            how = {"t_span": (0, 1), "method": method, "rtol": 1e-5}
+            assert assert_runs(chain(n, name), starts(9, n, 2, 2.0), **how).success.all()
+
+
 PRINT = """
 import sys
 import pendcore as pc
-from test_bits_of_members import ADAPTIVE, KEPT, SCENES, asked, bits
+from test_bits_of_members import ADAPTIVE, KEPT, SCENES, asked, bits, starts
 for name in KEPT:
     for method in ADAPTIVE:
         try:
@@ -96,6 +104,12 @@ for name in KEPT:
         except ValueError:  # no Taylor series
             continue
         print(name, method, bits(found))
+circle = starts(200, 2, 7, 3.1415926)
+for method in ("dopri5", "dop853", "taylor"):
+    for rtol in (1e-3, 1e-9):
+        how = {"method": method, "rtol": rtol, "workers": int(sys.argv[1])}
+        found = pc.ensemble(SCENES["textbook"], (0, 5), circle, 0.5, **how)
+        print("the whole circle", method, rtol, bits(found))
 """
 
 

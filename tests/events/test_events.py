@@ -10,6 +10,7 @@ from pendcore import _core
 from pendcore import effects as fx
 from pendcore import events as ev
 from reference.rounding import of_dense_output, of_new_state
+from turning_rod import directions, times, turning
 from unit_rods import rod
 
 METHODS = [method["name"] for method in _core.methods()]
@@ -24,19 +25,6 @@ RATES = [ev.RateZero(joint=1), ev.RateZero(link=1)]
 # are some hundreds.
 STEPS = dict.fromkeys(["dop853", "dop853-radau5"], of_new_state("dop853"))
 WITHIN_STEPS = dict.fromkeys(STEPS, of_dense_output("dop853"))
-
-
-def times(found):
-    return [one.t for one in found]
-
-
-def directions(found):
-    return [one.direction for one in found]
-
-
-def turning(rate, span, events, q0=0.0, **how):
-    """A rod that nothing turns."""
-    return pc.simulate(rod(), span, q0, rate, events=events, **how)
 
 
 def parabola(span, step, method, *wanted):
@@ -57,21 +45,24 @@ def test_roots_in_one_step_or_at_its_ends_are_found_once_each(method, step, back
     """The angle is -1/2 at 0.5 and 1: both in one step, each at the end of a step, or anywhere."""
     span = (2.0, 0.0) if backward else (0.0, 2.0)
     wanted = [ev.LinkAngle(1, -0.5), ev.JointAngle(1, -0.5), *RATES]
-    wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, samples=16)]
-    wanted += [ev.TipLine((np.cos(0.5), -np.sin(0.5)), (np.sin(0.5), np.cos(0.5)))]
-    first, second, joint, rate, own, tip = parabola(span, step, method, *wanted).events
+    wanted += [ev.Function(lambda t, q, qd: q[0] + 0.5, **how) for how in ({"samples": 16}, {})]
+    normals = {1: [(np.sin(0.5), np.cos(0.5)), (-0.18, 1.0)], -1: [(-0.3, -0.2)]}
+    point = (np.cos(0.5), -np.sin(0.5))
+    wanted += [ev.TipLine(point, normal) for some in normals.values() for normal in some]
+    first, second, joint, rate, own, usual, *tips = parabola(span, step, method, *wanted).events
     exact = [1.0, 0.5] if backward else [0.5, 1.0]
     fastest, there = 2.5, 0.5
     rounding = STEPS.get(method, 0.0) * 2.0 + WITHIN_STEPS.get(method, 0.0) * step
     last_bits = max(4e-15, rounding * fastest / there)
-    for found in (first, second, own):
+    for found in (first, second, own, usual):
         assert times(found) == pytest.approx(exact, abs=last_bits)
         assert directions(found) == [-1, 1]
         for one in found:
             assert one.q[0] == pytest.approx(-0.5, abs=2e-15)
             assert one.qd[0] == pytest.approx(2 * one.t - 1.5, abs=max(2e-15, 2 * rounding))
-    assert times(tip) == pytest.approx(exact, abs=max(1e-14, last_bits))
-    assert directions(tip) == [-1, 1]
+    for tip, side in zip(tips, (1, 1, -1), strict=True):
+        assert times(tip) == pytest.approx(exact, abs=max(1e-14, last_bits))
+        assert directions(tip) == [-side, side]
     assert times(rate) == times(joint) == pytest.approx([0.75], abs=max(1e-15, rounding))
     assert directions(rate) == [-1 if backward else 1]
 

@@ -8,6 +8,7 @@ import pendcore as pc
 import pytest
 from pendcore import effects as fx
 from pendcore import events as ev
+from turning_rod import directions, times
 from unit_rods import rod
 
 inf = np.inf
@@ -20,10 +21,6 @@ def dropped(e):
 
 
 FALL, SPEED = np.sqrt(0.4), 2 * np.sqrt(0.4)
-
-
-def times(found):
-    return [one.t for one in found]
 
 
 # Impacts ----------------------------------------------------------------------------------------
@@ -180,6 +177,27 @@ def test_a_jump_over_more_turns_than_an_int_holds_ends_the_run_in_words():
 # Backward ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_elastic_impacts_are_events_on_the_way_back_too(sign, fine):
+    """The rod strikes after T = sqrt 0.4, 3 T, 5 T, ... and is highest after 2 T, 4 T, ...
+
+    It passes 0.3 when T/2 from its highest points. Backward, it falls with a positive rate.
+    """
+    watched = [ev.JointAngle(1, 0.0), ev.RateZero(joint=1), ev.JointAngle(1, 0.3)]
+    sol = pc.simulate(dropped(1.0), (0, sign * 6.2), 0.4, events=watched, **fine)
+    touches, zeros, passed = sol.events
+    assert times(touches) == pytest.approx(sign * FALL * np.arange(1, 10, 2), abs=1e-10)
+    assert times(zeros) == pytest.approx(sign * FALL * np.arange(1, 10), abs=1e-10)
+    assert times(passed) == pytest.approx(sign * FALL * np.arange(0.5, 10), abs=1e-10)
+    for one in [*touches, *zeros[::2]]:
+        np.testing.assert_allclose(one.y_before, [0, -sign * SPEED], atol=1e-9)
+        np.testing.assert_allclose(one.y_after, [0, sign * SPEED], atol=1e-9)
+    assert directions(touches) == [-1] * 5  # along the run
+    assert directions(zeros) == [sign, -sign] * 4 + [sign]
+    assert directions(passed) == [-1, 1] * 5
+    assert all(one.y_before is one.y_after is None for one in zeros[1::2])
+
+
 def test_what_elastic_impacts_of_a_chain_are_found_backward_is_found_of_its_mirror(fine):
     stops = [fx.JointStop(joint=j, range=(-0.4, 0.3), restitution=1.0) for j in (2, 3)]
     scene = rod(*stops, links=3, gravity=9.81)
@@ -239,7 +257,7 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine):
     assert sol.qd[-1, 0] > 0.1  # the rod left again, one turn of the push after the first time
     rests, touches = sol.events
     assert times(rests) == pytest.approx([*turns, back], abs=1e-10)
-    assert [found.direction for found in rests] == [-1, 1, -1, 1]
+    assert directions(rests) == [-1, 1, -1, 1]
     assert times(touches) == [rests[-1].t]
     assert touches[0].y_after.tolist() == [0.0, 0.0]
 

@@ -9,6 +9,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import events as ev
+from turning_rod import times
 
 BOOK = pc.Scene.textbook()
 
@@ -19,10 +20,6 @@ def run(*events, **options):
 
 def height(t, q, qd):
     return float(np.sin(q).sum() - 1.7)
-
-
-def times(found):
-    return [one.t for one in found]
 
 
 def test_a_function_sees_states_of_the_run_in_arrays_of_its_own():
