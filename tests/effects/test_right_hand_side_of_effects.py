@@ -21,8 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 from reference.arithmetic import Number, multiple_precision
-from reference.effects import LAWS, Described, law
-from reference.effects.torsional_spring import TorsionalSpring
+from reference.effects import LAWS, Described, TorsionalSpring, law
 from reference.instant import Instant
 from reference.newton_euler import Body
 from reference.random_rigs import START, DrawnRig, rigs

@@ -10,11 +10,11 @@ import ctypes
 from collections.abc import Sequence
 from typing import Any
 
+from compiled_functions import FORCES
 from hypothesis import assume
 from hypothesis import strategies as st
 
 from reference.effects import Described
-from reference.effects.compiled_user import SIGNATURE
 from reference.newton_euler import Body
 
 State = tuple[float, list[float], list[float]]
@@ -104,7 +104,7 @@ def address_of(a: float, b: float, c: float) -> int:
         for i in range(n):
             forces[i] += a * t - b * q[i] - c * qd[i] + b * q[n - 1 - i]
 
-    COMPILED.append(SIGNATURE(write))
+    COMPILED.append(FORCES(write))
     return ctypes.cast(COMPILED[-1], ctypes.c_void_p).value or 0
 
 

@@ -7,13 +7,36 @@ from dataclasses import dataclass
 
 from reference.arithmetic import DOUBLE, Arithmetic, Number
 from reference.conserved import Energy, energy_of_links
-from reference.effects.law import Law
-from reference.instant import AT_REST, Instant
+from reference.instant import AT_REST, Instant, PivotMotion
 from reference.loads import Loads
 from reference.newton_euler import Body, Equations, Motion, chain_equations, motion_of
 
 # What the ledger books as lost; the other entries are work done on the chain.
 LOSSES = {"viscous", "dry", "drag"}
+
+
+@dataclass(frozen=True)
+class Law:
+    """An effect that does nothing; most laws define one of its parts (`reference.effects`)."""
+
+    def pivot(self, t: Number, arithmetic: Arithmetic) -> PivotMotion | None:
+        """How the pivot moves, if the effect moves it."""
+        return None
+
+    def act(self, instant: Instant, loads: Loads) -> None:
+        """Add forces and couples, inertia, constraints."""
+
+    def kinetic(self, instant: Instant) -> Number:
+        """Kinetic energy besides that of the links, J."""
+        return 0
+
+    def potential(self, instant: Instant) -> Number:
+        """Potential energy besides that of the links, J."""
+        return 0
+
+    def shares(self, instant: Instant, motion: Motion) -> dict[str, Number]:
+        """Power of each entry of the ledger, W; losses count as positive."""
+        return {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,18 +1,22 @@
-"""The natural cubic spline: value, first and second derivative.
-
-Its second derivative is linear between the knots and zero at the ends. The values c_i at the inner
-knots follow from the continuity of the first derivative, with h_i = t_(i+1) - t_i:
-
-    h_(i-1) c_(i-1) + 2 (h_(i-1) + h_i) c_i + h_i c_(i+1)
-        = 6 ((x_(i+1) - x_i)/h_i - (x_i - x_(i-1))/h_(i-1))
-"""
+"""Curves over time, with their first two derivatives: sinusoids and natural cubic splines."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from reference.arithmetic import Arithmetic, Number
+
+
+def sinusoid(
+    t: Number, described: Mapping[str, float], arithmetic: Arithmetic
+) -> tuple[Number, Number, Number]:
+    """Return amplitude sin(angular_frequency t + phase), its rate and its acceleration."""
+    number = arithmetic.number
+    amplitude, w = number(described["amplitude"]), number(described["angular_frequency"])
+    argument = w * number(t) + number(described.get("phase", 0.0))
+    sine, cosine = arithmetic.sin(argument), arithmetic.cos(argument)
+    return amplitude * sine, amplitude * w * cosine, -amplitude * w * w * sine
 
 
 def second_derivatives(
