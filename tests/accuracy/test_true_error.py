@@ -15,7 +15,7 @@ import pytest
 pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
 
 from true_error import campaign, report
-from true_error.drawn import Drawn
+from true_error.asked import Drawn
 from true_error.families import FAMILIES
 from true_error.judge import Verdict, judged
 from true_error.reference import Reference
@@ -159,7 +159,7 @@ def test_an_exception_is_told_and_ends_nothing(drawn: Drawn) -> None:
 
     for which in ("error", "rtol"):
         found = verdict_of(drawn, **{which: broken})
-        assert found.faults == ["exception"]
+        assert found.faults == ["exceptions"]
         assert found.exception == "RecursionError: too deep"
 
 
@@ -196,6 +196,6 @@ def test_the_campaign_lists_what_repeats_an_offender(
     assert campaign.main([*asked, "--output", str(out), "--record", str(record)]) == 1
     told = capsys.readouterr().out
     assert "--family mixed --seeds 6:7" in told
-    assert "mixed: 2 above what was asked" in told
+    assert "mixed: 2 of 2 above" in told
     assert '"above": 2' in record.read_text()
     assert out.read_text().count('"faults"') == 2

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 
-from true_error.arrays import Floats, Longs
+from true_error.arithmetic import Floats, Longs
 
 WITHIN_A_STEP = 12
 MOST_TIMES = 4000

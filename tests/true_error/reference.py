@@ -13,10 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from true_error.arithmetic import LADDER, Arithmetic
-from true_error.arrays import Floats, Longs
+from true_error.arithmetic import LADDER, Arithmetic, Floats, Longs
+from true_error.asked import Drawn
 from true_error.curve import angles_apart, positions_apart
-from true_error.drawn import Drawn
 from true_error.switched import SwitchedTrajectory
 from true_error.trajectory import NoReferenceError, Trajectory
 

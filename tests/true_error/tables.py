@@ -8,6 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 import pendcore as pc
+from reference.arithmetic import eliminate
+from reference.curves import second_derivatives
 
 from true_error.constants import Parameters
 
@@ -60,21 +62,5 @@ def _linear(of: list[tuple[str, str, list[tuple[Any, Any]]]], hold: bool = False
 
 
 def bends(t: tuple[float, ...], x: tuple[float, ...]) -> list[Fraction]:
-    """Return the second derivatives of the natural cubic spline through points, exactly.
-
-    h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (s_i - s_{i-1}),  s the slopes.
-    """
-    exact, values = [Fraction(value) for value in t], [Fraction(value) for value in x]
-    h = [b - a for a, b in pairwise(exact)]
-    s = [(b - a) / step for a, b, step in zip(values[:-1], values[1:], h, strict=True)]
-    inner = len(t) - 2
-    diagonal = [2 * (h[i] + h[i + 1]) for i in range(inner)]
-    right = [6 * (s[i + 1] - s[i]) for i in range(inner)]
-    for i in range(1, inner):
-        factor = h[i] / diagonal[i - 1]
-        diagonal[i] -= factor * h[i]
-        right[i] -= factor * right[i - 1]
-    found = [Fraction(0)] * len(t)
-    for i in reversed(range(inner)):
-        found[i + 1] = (right[i] - h[i + 1] * found[i + 2]) / diagonal[i]
-    return found
+    """Return the second derivatives of the natural cubic spline through points, exactly."""
+    return second_derivatives([*map(Fraction, t)], [*map(Fraction, x)], eliminate)
