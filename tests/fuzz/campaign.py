@@ -15,8 +15,8 @@ import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pendcore as pc
 from tqdm import tqdm
@@ -25,9 +25,8 @@ from fuzz import kept, watch
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import drawn
 from fuzz.shrinking import breaches_alone, kind, shrunk
-from fuzz.worker import seed_of
+from fuzz.verdict import Verdict, of_number, seed_of
 
-WORKER = [sys.executable, "-m", "fuzz.worker"]
 SHOWN = 3
 """Cases of one kind of failure that are made small."""
 
@@ -37,7 +36,7 @@ class Told:
     """How often each outcome occurred, what failed, and seconds and number of the longest case."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
-    failed: list[dict[str, Any]] = field(default_factory=list)
+    failed: dict[int, Verdict] = field(default_factory=dict)
     longest: tuple[float, int] = (0.0, 0)
 
 
@@ -78,7 +77,7 @@ def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Rec
         "first": asked.first,
         "cases": told.outcomes.total(),
         "failed": len(told.failed),
-        "failures": sorted(verdict["case"] for verdict in told.failed)[:100],
+        "failures": [*told.failed][:100],
         "outcomes": dict(told.outcomes.most_common()),
         "longest": dict(zip(("seconds", "case"), told.longest, strict=True)),
         "seconds": seconds,
@@ -88,18 +87,16 @@ def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Rec
     }
 
 
-def run(
-    seed: str, cases: range, workers: int = 1, worker: list[str] = WORKER,
-    patience: float = watch.HANGS_AFTER,
-) -> Told:  # fmt: skip
+def run(seed: str, cases: range, workers: int = 1) -> Told:
     """Return what became of the cases."""
     found = Told()
-    told = watch.run([*worker, seed], cases, workers, patience)
-    for verdict in tqdm(told, total=len(cases), unit="case", disable=None):
-        found.outcomes[verdict["outcome"]] += 1
-        found.longest = max(found.longest, (verdict["seconds"], verdict["case"]))
-        if verdict["breaches"]:
-            found.failed.append(verdict)
+    verdicts = watch.run(partial(of_number, campaign=seed), cases, workers)
+    told = tqdm(verdicts, total=len(cases), unit="case", disable=None)
+    for case, verdict in zip(cases, told, strict=True):
+        found.outcomes[verdict.outcome] += 1
+        found.longest = max(found.longest, (verdict.seconds, case))
+        if verdict.breaches:
+            found.failed[case] = verdict
     return found
 
 
@@ -107,14 +104,13 @@ def report_of(head: str, told: Told, seed: str, seconds: float) -> str:
     """Return what became of all, and the first failures of each kind made small."""
     lines = [f"{head}: {len(told.failed)} failed, {seconds:.0f} s", ""]
     lines += [f"{count:8d}  {outcome}" for outcome, count in told.outcomes.most_common()]
-    kinds: dict[str, list[dict[str, Any]]] = {}
-    for verdict in sorted(told.failed, key=lambda verdict: verdict["case"]):
-        for one in {kind(breach) for breach in verdict["breaches"]}:
-            kinds.setdefault(one, []).append(verdict)
-    for one, verdicts in kinds.items():
-        numbers = ", ".join(str(verdict["case"]) for verdict in verdicts[:20])
-        lines += ["", f"==== {one}: {len(verdicts)} cases: {numbers}"]
-        lines += [report_of_case(seed, verdict["case"], one) for verdict in verdicts[:SHOWN]]
+    kinds: dict[str, list[int]] = {}
+    for case, verdict in told.failed.items():
+        for one in {kind(breach) for breach in verdict.breaches}:
+            kinds.setdefault(one, []).append(case)
+    for one, cases in kinds.items():
+        lines += ["", f"==== {one}: {len(cases)} cases: {', '.join(map(str, cases[:20]))}"]
+        lines += [report_of_case(seed, case, one) for case in cases[:SHOWN]]
     return "\n".join(lines) + "\n"
 
 
