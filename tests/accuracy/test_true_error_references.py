@@ -28,7 +28,6 @@ from true_error.own_laws import LAWS, OwnLaw
 from true_error.reference import Reference, trajectory
 from true_error.switched import SwitchedTrajectory
 from true_error.switches import Friction
-from true_error.tables import bends
 from true_error.trajectory import NoReferenceError
 
 pytestmark = pytest.mark.unsanitized
@@ -138,62 +137,94 @@ def test_the_reference_knows_its_own_error(family: str) -> None:
         assert (apart <= truth.unsure + 1e-18).all()
 
 
-# Friction and stops: what can be said exactly --------------------------------------------------
+# Rods whose motion can be said exactly ---------------------------------------------------------
+
+Exact = tuple[Drawn, dict[float, float]]
+"""A rod, and its angle at some times."""
 
 
-def test_a_rod_that_rubs_stops_where_its_momentum_ends() -> None:
-    of = drawn([E.DryJointFriction(1, 0.3)], (0.2,), (3.0,), 5.0)
-    ends = J * 3.0 / 0.3
-    found = angle(of, ends / 2, ends, 5.0)
-    assert found[0] == pytest.approx(0.2 + 3.0 * ends / 2 - 0.3 / J * ends**2 / 8, rel=1e-14)
-    assert found[1:] == pytest.approx(0.2 + J * 9.0 / (2 * 0.3), rel=1e-14)
+def stopped_by_friction(rate: float = 3.0, torque: float = 0.3) -> Exact:
+    end = J * rate / torque
+    far, half = J * rate**2 / (2 * torque), rate * end / 2 - torque / J * end**2 / 8
+    of = drawn([E.DryJointFriction(1, torque)], (0.2,), (rate,), 5.0)
+    return of, {end / 2: 0.2 + half, end: 0.2 + far, 5.0: 0.2 + far}
 
 
-@pytest.mark.parametrize("exponent", [1.0, 2.0])
-@pytest.mark.parametrize("velocity", [0.003, 0.5])
-def test_a_rod_with_a_static_peak_comes_as_far_as_an_integral_says(
-    exponent: float, velocity: float
-) -> None:
+def stopped_by_a_peak(velocity: float, exponent: float) -> Exact:
     """The peak is narrow, and a step that begins far from it does not see it."""
-    peak = E.DryJointFriction(1, 0.3, static=0.9, stribeck_velocity=velocity, exponent=exponent)
-    found = angle(drawn([peak], (0.0,), (3.0,), 5.0), 5.0)[0]
 
     def slowed(w: Any) -> Any:
         return w * J / (0.3 + 0.6 * mpmath.exp(-((w / velocity) ** exponent)))
 
-    turned = mpmath.quad(slowed, [0, velocity, 3 * velocity, 10 * velocity, 3])
-    assert float(found) == pytest.approx(float(turned), rel=1e-12)
+    turned = mpmath.quad(slowed, [0, *np.geomspace(velocity, 3, 8)])
+    peak = E.DryJointFriction(1, 0.3, static=0.9, stribeck_velocity=velocity, exponent=exponent)
+    return drawn([peak], (0.0,), (3.0,), 5.0), {5.0: float(turned)}
 
 
-def test_a_rod_on_a_spring_turns_back_where_friction_says() -> None:
-    k, tc, start = 20.0, 0.5, 0.4
-    rubs = [E.TorsionalSpring(1, k), E.DryJointFriction(1, tc)]
-    of = drawn(rubs, (start,), (0.0,), 5.0)
+def turning_back(k: float = 20.0, torque: float = 0.5) -> Exact:
+    """A spring drives it back until friction holds it."""
+    swings = [0.4]
+    while k * abs(swings[-1]) > torque:
+        swings.append(-(swings[-1] - np.sign(swings[-1]) * 2 * torque / k))
+    rubs = [E.TorsionalSpring(1, k), E.DryJointFriction(1, torque)]
     turns = np.pi * np.sqrt(J / k) * np.arange(1, 5)
-    swings = [start]
-    while k * abs(swings[-1]) > tc:
-        swings.append(-(swings[-1] - np.sign(swings[-1]) * 2 * tc / k))
-    found = np.asarray(angle(of, *turns, 5.0), float)
-    np.testing.assert_allclose(found, [*swings[1:5], swings[-1]], rtol=1e-13, atol=1e-15)
+    known = dict(zip(turns, swings[1:5], strict=True)) | {5.0: swings[-1]}
+    return drawn(rubs, (0.4,), (0.0,), 5.0), known
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
-def test_a_rod_that_is_pushed_against_a_stop_bounces_as_it_must(restitution: float) -> None:
-    push, capture = 2.0, 0.05
+def bouncing(restitution: float, push: float = 2.0, capture: float = 0.05) -> Exact:
+    """A motor pushes it against a stop, where it rests in the end unless the stop is elastic."""
     stop = E.JointStop(1, (-np.inf, 1.0), restitution=restitution, capture_speed=capture)
-    of = drawn([E.Motor(1, constant=push), stop], (0.0,), (0.0,), 4.0)
     a = push / J
-    first, speed = np.sqrt(2 / a), np.sqrt(2 * a)
-    tops, t = [], first
-    while speed * restitution and speed > capture and t < 4.0:
+    t, speed, tops = np.sqrt(2 / a), np.sqrt(2 * a), {}
+    while speed * restitution and speed > capture and t + restitution * speed / a < 4.0:
         speed *= restitution
-        tops.append((t + speed / a, 1.0 - speed**2 / (2 * a)))
+        tops[t + speed / a] = 1.0 - speed**2 / (2 * a)
         t += 2 * speed / a
-    times, highest = zip(*[top for top in tops if top[0] < 4.0], strict=True) if tops else ((), ())
-    found = np.asarray(angle(of, *times, 4.0), float)
-    np.testing.assert_allclose(found[:-1], highest, rtol=1e-13, atol=1e-15)
-    if restitution < 1:
-        assert found[-1] == 1.0
+    at_rest = {4.0: 1.0} if restitution < 1 else {}
+    return drawn([E.Motor(1, constant=push), stop], (0.0,), (0.0,), 4.0), tops | at_rest
+
+
+def following_a_table() -> Exact:
+    t, torque = [0.0, 1.0, 1.5, 4.0], [0.0, 2.0, -3.0, 1.0]
+    turned = mpmath.quad(lambda s: (3 - s) * np.interp(float(s), t, torque) / J, [0, 1, 1.5, 3])
+    table = E.Motor(1, table=E.Table(t, torque))
+    return drawn([table], (0.1,), (0.2,), 3.0), {3.0: 0.1 + 0.6 + float(turned)}
+
+
+def slowed_by_a_square(damper: Any) -> Exact:
+    turned = -J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J)
+    return drawn([damper], (0.0,), (-3.0,), 5.0), {5.0: turned}
+
+
+def pushed_by_a_pulse() -> Exact:
+    """It is short and far ahead, and no step may go past it."""
+    turned = 2.0 * 0.01 * np.sqrt(np.pi) / J * 2.0
+    pulse = E.User(OwnLaw("pulse", 1, (2.0, 3.0, 0.01)))
+    return drawn([pulse], (0.0,), (0.0,), 5.0), {5.0: turned}
+
+
+EXACT = {
+    "friction": stopped_by_friction(),
+    **{f"peak at {v}, {p}": stopped_by_a_peak(v, p) for v in (0.003, 0.5) for p in (1.0, 2.0)},
+    "spring and friction": turning_back(),
+    **{f"restitution {e}": bouncing(e) for e in (0.0, 0.5, 1.0)},
+    "table": following_a_table(),
+    "pulse": pushed_by_a_pulse(),
+    "quadratic": slowed_by_a_square(E.ViscousJoint(1, 0.0, damping2=0.4)),
+    "own quadratic": slowed_by_a_square(E.User(OwnLaw("quadratic damper", 1, (0.4,)))),
+}
+
+
+@pytest.mark.every_value("name")
+@pytest.mark.parametrize("name", EXACT)
+def test_a_rod_moves_as_a_closed_form_or_an_integral_says(name: str) -> None:
+    of, known = EXACT[name]
+    found = np.asarray(angle(of, *known), float)
+    np.testing.assert_allclose(found, [*known.values()], rtol=1e-14, atol=1e-15)
+
+
+# Chains, and joints that hold ------------------------------------------------------------------
 
 
 def test_an_impact_of_a_chain_keeps_what_it_must() -> None:
@@ -234,43 +265,6 @@ def test_a_joint_holds_to_the_last_bit_and_gives_way() -> None:
     held.extend(gives_way + 1e-6, monotonic() + 5)
     assert isinstance(held.switches[0], Friction)
     assert held.switches[0].sign == 1
-
-
-# Tables, splines, laws of one's own ------------------------------------------------------------
-
-
-def test_a_table_of_torque_turns_a_rod_as_its_integral_does() -> None:
-    t, torque = [0.0, 1.0, 1.5, 4.0], [0.0, 2.0, -3.0, 1.0]
-    of = drawn([E.Motor(1, table=E.Table(t, torque))], (0.1,), (0.2,), 3.0)
-    turned = mpmath.quad(lambda s: (3 - s) * np.interp(float(s), t, torque) / J, [0, 1, 1.5, 3])
-    assert float(angle(of, 3.0)[0]) == pytest.approx(0.1 + 0.6 + float(turned), rel=1e-12)
-
-
-def test_a_natural_spline_has_no_kinks() -> None:
-    t, x = (0.0, 0.7, 1.0, 2.5), (0.3, -1.0, 2.0, 0.4)
-    m = [float(value) for value in bends(t, x)]
-    assert m[0] == m[-1] == 0.0
-    h = np.diff(t)
-    rise, bend = np.diff(x) / h, np.array(m)
-    after = rise - h * (2 * bend[:-1] + bend[1:]) / 6
-    before = rise + h * (bend[:-1] + 2 * bend[1:]) / 6
-    assert before[:-1] == pytest.approx(after[1:], rel=1e-13)
-
-
-def test_a_short_pulse_far_ahead_is_not_stepped_over() -> None:
-    pulse = OwnLaw("pulse", 1, (2.0, 3.0, 0.01))
-    of = drawn([E.User(pulse)], (0.0,), (0.0,), 5.0)
-    turned = 2.0 * 0.01 * np.sqrt(np.pi) / J * 2.0
-    assert float(angle(of, 5.0)[0]) == pytest.approx(turned, rel=1e-12)
-
-
-def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
-    for damping in (
-        E.ViscousJoint(1, 0.0, damping2=0.4),
-        E.User(OwnLaw("quadratic damper", 1, (0.4,))),
-    ):
-        found = angle(drawn([damping], (0.0,), (-3.0,), 5.0), 5.0)[0]
-        assert float(found) == pytest.approx(-J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J), rel=1e-13)
 
 
 def test_laws_that_change_side_at_one_time_all_do() -> None:

@@ -64,7 +64,7 @@ def main(arguments: list[str] | None = None) -> int:
     report = report_of(head, told, asked.seed, seconds)
     asked.output.parent.mkdir(parents=True, exist_ok=True)
     asked.output.write_text(report)
-    if asked.page:
+    if asked.page and asked.cases >= kept.FULL:
         kept.write(record_of(asked, told, seconds), asked.page, asked.record)
     print(report)
     return 1 if told.failed else 0

@@ -14,17 +14,6 @@ BEGIN, END = "<!-- campaign: begin -->\n", "<!-- campaign: end -->"
 Record = dict[str, Any]
 
 
-def reasons(outcomes: dict[str, int]) -> list[tuple[str, int, int]]:
-    """Return each outcome, its cases, and the number of its reasons, which stand after a colon."""
-    cases: Counter[str] = Counter()
-    kinds: Counter[str] = Counter()
-    for outcome, count in outcomes.items():
-        name = outcome.partition(":")[0]
-        cases[name] += count
-        kinds[name] += 1
-    return [(name, count, kinds[name]) for name, count in cases.most_common()]
-
-
 def tables(record: Record) -> str:
     """Return what stands between the markers of the page."""
     words = {"refused": "refused, with the reason", "not drawn": "not drawn: no such scene can be"}
@@ -41,24 +30,22 @@ def tables(record: Record) -> str:
     }
     lines = ["| | |", "|---|---|", *(f"| {name} | {fact} |" for name, fact in facts.items())]
     lines += ["", "| outcome | cases |", "|---|--:|"]
-    for name, count, kinds in reasons(record["outcomes"]):
+    cases: Counter[str] = Counter()
+    for outcome, count in record["outcomes"].items():  # the reason stands after a colon
+        cases[outcome.partition(":")[0]] += count
+    kinds = Counter(outcome.partition(":")[0] for outcome in record["outcomes"])
+    for name, count in cases.most_common():
         text = words.get(name, f"`{name}`" if " " not in name else name)
-        lines.append(f"| {text}{f' ({kinds} kinds)' if kinds > 1 else ''} | {count:,} |")
+        of_kinds = f" ({kinds[name]} kinds)" if kinds[name] > 1 else ""
+        lines.append(f"| {text}{of_kinds} | {count:,} |")
     if record["failed"]:
         lines += ["", f"Failed: cases {', '.join(map(str, record['failures']))}."]
     return "\n".join(lines) + "\n"
 
 
-def page_of(text: str, record: Record) -> str:
-    """Return the page with the record's tables in place of those before."""
-    before, rest = text.split(BEGIN)
-    return before + BEGIN + tables(record) + END + rest.split(END)[1]
-
-
-def write(record: Record, page: Path, file: Path) -> bool:
-    """Write the page and the record's file, if the campaign was a full one."""
-    if record["cases"] < FULL:
-        return False
+def write(record: Record, page: Path, file: Path) -> None:
+    """Write the record's file, and its tables in place of those on the page."""
     file.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    page.write_text(page_of(page.read_text(encoding="utf-8"), record), encoding="utf-8")
-    return True
+    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    shown = before + BEGIN + tables(record) + END + rest.partition(END)[2]
+    page.write_text(shown, encoding="utf-8")
