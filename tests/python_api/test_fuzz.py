@@ -7,10 +7,11 @@ import time
 from types import SimpleNamespace
 
 import numpy as np
+import pendcore as pc
 import pytest
 from fuzz import campaign, claims, watch
 from fuzz.choices import FromSeed
-from fuzz.drawn_run import TIME_LIMIT, drawn
+from fuzz.drawn_run import TIME_LIMIT, Drawn
 from fuzz.readers import READERS, finding, read_archive, read_case, whole_archives, whole_cases
 from fuzz.verdict import Verdict
 
@@ -43,9 +44,8 @@ def test_a_crash_and_a_hang_are_told_and_the_next_case_is_judged():
     assert "Fatal Python error: Aborted" in found[0].breaches[0]
 
 
-@pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 def test_a_nan_breaks_a_claim():
-    case = drawn(FromSeed("ci/0"))
+    case = Drawn(pc.Scene.textbook(), [0.3, 1.0], [0.0, 0.0], (0.0, 1.0))
     sol = case.simulate()
     assert list(claims.is_finite(case, sol, FromSeed(""))) == []
     bad = SimpleNamespace(t=sol.t, y=np.nan * sol.y, _run=sol._run, status="finished")
