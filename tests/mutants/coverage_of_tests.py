@@ -6,8 +6,6 @@ import ast
 import json
 from pathlib import Path
 
-from coverage import CoverageData
-
 SETTINGS = """\
 [run]
 core = ctrace
@@ -15,38 +13,26 @@ data_file = {data}
 source = {source}
 parallel = true
 patch = subprocess
+[json]
+show_contexts = true
 """
 """A line that runs in a process of its own counts as run outside a test."""
 
-TestsOfLines = dict[str, dict[int, list[str]]]
-"""By file and line, the tests that run it; the empty name is for what runs outside a test."""
+Contexts = dict[str, list[str]]
+"""By the number of a line, what ran it: a test and one of its phases, or nothing outside tests."""
 
 
-def told(data_file: Path, source: Path) -> TestsOfLines:
-    """Return what a run of all tests with `SETTINGS` left."""
-    data = CoverageData(str(data_file))
-    data.read()
-    tests: TestsOfLines = {}
-    for file in data.measured_files():
-        by_line = data.contexts_by_lineno(file)
-        tests[str(Path(file).relative_to(source))] = {
-            line: sorted({name_of(context) for context in contexts})
-            for line, contexts in by_line.items()
-        }
-    return tests
+def told(report: Path) -> dict[str, Contexts]:
+    """Return what ran the lines of each file, as coverage's report has it."""
+    files = json.loads(report.read_text())["files"]
+    return {file: of_file["contexts"] for file, of_file in files.items()}
 
 
-def name_of(context: str) -> str:
-    """Return the test of a context as pytest takes it, without its parameters."""
-    return context.partition("|")[0].partition("[")[0]
-
-
-def tests_that_run(tests: TestsOfLines, path: str, source: str, line: int) -> list[str]:
-    """Return the tests that run the statement on a line."""
-    of_file = tests.get(path, {})
+def tests_that_run(contexts: Contexts, source: str, line: int) -> list[str]:
+    """Return the tests, without their parameters, that run the statement on a line of a file."""
     begin, end = statement_at(source, line)
-    found = {test for one in range(begin, end + 1) for test in of_file.get(one, [])} - {""}
-    return sorted(found)
+    found = {one for number in range(begin, end + 1) for one in contexts.get(str(number), [])}
+    return sorted({one.partition("|")[0].partition("[")[0] for one in found} - {""})
 
 
 def statement_at(source: str, line: int) -> tuple[int, int]:
@@ -59,14 +45,3 @@ def statement_at(source: str, line: int) -> tuple[int, int]:
             if node.lineno <= line <= max(end, node.lineno):
                 spans.append((node.lineno, max(end, node.lineno)))
     return max(spans[1:] or spans, key=lambda span: span[0])
-
-
-def saved(tests: TestsOfLines, path: Path) -> None:
-    path.write_text(json.dumps(tests))
-
-
-def loaded(path: Path) -> TestsOfLines:
-    return {
-        file: {int(line): names for line, names in lines.items()}
-        for file, lines in json.loads(path.read_text()).items()
-    }

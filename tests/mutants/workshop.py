@@ -22,7 +22,6 @@ from mutants.related import related_first
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
 SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
-TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 KINDS = ("not outside_build", "outside_build")
 """The tests that build something outside the project come last."""
 SILENT = 180.0
@@ -61,25 +60,25 @@ class Workshop:
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
         self.installed()
         self.core = self.bytes_of_core()
-        self.tests_of_lines: coverage.TestsOfLines = {}
+        self.contexts: dict[str, coverage.Contexts] = {}
 
     def measured(self) -> Outcome:
         """Run all tests without a mistake, and learn which of them run a line of the package."""
-        known = TESTS_OF_LINES.with_suffix(f".{self.commit}.json")
+        known = PLACE / f"coverage.{self.commit}.json"
         if not known.exists():
             data = PLACE / "coverage/data"
             shutil.rmtree(data.parent, ignore_errors=True)
             data.parent.mkdir()
             settings = data.with_name("settings.ini")
             settings.write_text(coverage.SETTINGS.format(data=data, source=SITE / "pendcore"))
-            measuring = ["--cov", "--cov-context=test", "--cov-append", "--cov-report="]
-            outcome = self.asked_of_tests(
-                related_first(SOURCE, ""), more=[*measuring, f"--cov-config={settings}"]
-            )
+            report = data.with_name("report.json")
+            measuring = ["--cov", "--cov-context=test", "--cov-append"]
+            measuring += [f"--cov-report=json:{report}", f"--cov-config={settings}"]
+            outcome = self.asked_of_tests(related_first(SOURCE, ""), more=measuring)
             if outcome.what != "alive":
                 return outcome
-            coverage.saved(coverage.told(data, SITE), known)
-        self.tests_of_lines = coverage.loaded(known)
+            report.rename(known)
+        self.contexts = coverage.told(known)
         return Outcome("alive")
 
     def tested(self, mutant: Mutant) -> Outcome:
@@ -92,7 +91,8 @@ class Workshop:
             file = SITE / mutant.path.removeprefix("python/")
             if not compiles(wrong):
                 return Outcome("no program")
-            if known := self.those_that_run(mutant, right.decode(), tests):
+            contexts = self.contexts.get(str(file), {})
+            if known := those_that_run(contexts, mutant.line, right.decode(), tests):
                 tests, kinds = known, KINDS[:1]  # what is built outside is the core
         file.write_bytes(wrong)
         try:
@@ -108,19 +108,6 @@ class Workshop:
             return outcome if outcome.what == "killed" else self.asked_of_tests(tests)
         finally:
             file.write_bytes(right)
-
-    def those_that_run(self, mutant: Mutant, source: str, files: list[str]) -> list[str]:
-        """Return the tests that run the line of a mutant, or may in a process of their own.
-
-        There are none where it runs outside tests alone.
-        """
-        path = mutant.path.removeprefix("python/")
-        tests = coverage.tests_that_run(self.tests_of_lines, path, source, mutant.line)
-        if not tests:
-            return []
-        tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
-        place = {file: i for i, file in enumerate(files)}
-        return sorted(tests, key=lambda test: place.get(test.partition("::")[0], len(place)))
 
     def built(self) -> bool:
         targets = ["all", "tests/cpp/all"]
@@ -173,6 +160,21 @@ class Workshop:
             os.killpg(process.pid, signal.SIGKILL)
             raise
         return process.returncode, said
+
+
+def those_that_run(
+    contexts: coverage.Contexts, line: int, source: str, files: list[str]
+) -> list[str]:
+    """Return the tests that run a line, or may in a process of their own.
+
+    There are none where it runs outside tests alone.
+    """
+    tests = coverage.tests_that_run(contexts, source, line)
+    if not tests:
+        return []
+    tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
+    place = {file: i for i, file in enumerate(files)}
+    return sorted(tests, key=lambda test: place.get(test.partition("::")[0], len(place)))
 
 
 def compiles(source: bytes) -> bool:
