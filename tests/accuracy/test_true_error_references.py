@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import fields, replace
 from inspect import signature
 from time import monotonic
@@ -15,7 +14,6 @@ import pytest
 from reference.effects import law
 from reference.newton_euler import Body
 from reference.rig import Rig
-from reference.trajectories import Trajectory as Digits
 from reference.trajectories import trajectory as of_digits
 
 pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
@@ -23,6 +21,7 @@ pytest.importorskip("heyoka", reason="the references of true errors need heyoka"
 from true_error.arithmetic import LONG, QUAD
 from true_error.asked import Drawn, mass_matrix
 from true_error.curve import positions_apart
+from true_error.drawing import scene_of
 from true_error.families import FAMILIES
 from true_error.own_laws import LAWS, OwnLaw
 from true_error.reference import Reference, trajectory
@@ -37,13 +36,10 @@ J = 1.7 * 0.6**2 / 3
 
 def drawn(
     effects: list[Any], q0: tuple[float, ...], qd0: tuple[float, ...], t_end: float,
-    gravity: float = 0.0, links: list[pc.Link] | None = None,
+    gravity: float = 0.0,
 ) -> Drawn:  # fmt: skip
-    """Return a scene of rods of inertia J about their joints, unless other links are given."""
-    links = links or [pc.Link(mass=1.7, length=0.6)] * len(q0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.PendcoreWarning)
-        scene = pc.Scene(links=links, effects=effects, gravity=gravity)
+    """Return a scene of rods of inertia J about their joints."""
+    scene = scene_of([pc.Link(mass=1.7, length=0.6)] * len(q0), effects, gravity)
     return Drawn(
         family="exact", seed=0, scene=scene, q0=q0, qd0=qd0, t_start=0.0, t_end=t_end,
         error=1e-9, rtol=1e-9, limit=0.1,
@@ -65,11 +61,9 @@ def angle(of: Drawn, *times: float) -> Any:
 )
 def test_trajectories_of_forty_digits(name: str) -> None:
     """The trajectories were integrated from other equations, in another arithmetic."""
-    case: Digits = of_digits(name)
-    links = [pc.Link(mass=m, length=x) for m, x in zip(case.masses, case.lengths, strict=True)]
-    damping = [E.ViscousJoint(j, b) for j, b in enumerate(case.damping, start=1) if b]
+    case = of_digits(name)
     start = tuple(map(float, case.q0)), tuple(map(float, case.qd0))
-    of = drawn(damping, *start, float(case.t[-1]), case.gravity, links)
+    of = replace(drawn([], *start, float(case.t[-1])), scene=case.scene)
     truth = Reference(of, 20.0).angles(case.t)
     apart = positions_apart(of.scene, case.q, truth.angles)
     assert apart.max() < 1e-15 + 10 * truth.unsure.max()

@@ -105,8 +105,7 @@ BOUNDS = {
 
 
 def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince.Run:
-    how = {"rtol": tolerance, "atol": tolerance, "damping": case.damping}
-    return chain.simulate(case.bodies, case.gravity, case.q0, case.qd0, (0.0, t_end), **how)
+    return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance)
 
 
 @pytest.mark.parametrize("name", names())
