@@ -113,3 +113,8 @@ def controller(dice: Dice, links: list[pc.Link], joint: int, rate: float, limit:
 
 def sinusoid(dice: Dice, amplitude: float, rate: float) -> Any:
     return E.Sinusoid(amplitude, rate, dice.uniform(0, 6))
+
+
+def motor(dice: Dice, joint: int, strength: float, rate: float) -> Any:
+    """Return a motor of a sinusoid, N m and rad/s."""
+    return E.Motor(joint, sinusoid=sinusoid(dice, strength, rate))

@@ -57,8 +57,8 @@ def mixed_effects(dice: Dice, links: list[pc.Link]) -> list[Any]:
     joint = dice.whole(1, n)
     strength = 10 * draw.joint_inertia(links, joint)
     if dice.chance(0.3):
-        drive = draw.sinusoid(dice, strength * dice.uniform(0, 1), dice.decades(-1, 2))
-        found.append(E.Motor(joint, sinusoid=drive))
+        strength *= dice.uniform(0, 1)
+        found.append(draw.motor(dice, joint, strength, dice.decades(-1, 2)))
     if dice.chance(0.2):
         found.append(draw.controller(dice, links, dice.whole(1, n), dice.decades(0, 1.5)))
     return found
@@ -101,8 +101,7 @@ def damped_effects(dice: Dice, links: list[pc.Link]) -> list[Any]:
         pd = E.PD(scale * dice.decades(-1, 1), scale * dice.decades(-2, 0), dice.uniform(-1, 1))
         found.append(E.Motor(joint, pd=pd))
     if dice.chance(0.3):
-        drive = draw.sinusoid(dice, scale * dice.uniform(0, 0.5), dice.decades(-1, 1))
-        found.append(E.Motor(joint, sinusoid=drive))
+        found.append(draw.motor(dice, joint, scale * dice.uniform(0, 0.5), dice.decades(-1, 1)))
     if dice.chance(0.2):
         found.append(E.DrivenPivot(y=E.Sinusoid(dice.decades(-3, -1), dice.decades(0, 1))))
     return found
@@ -148,8 +147,7 @@ def chaotic(seed: int) -> Drawn:
     if n == 1 or dice.chance(0.15):
         # One rod alone is regular: what drives it makes it chaotic.
         scale = 9.8 * links[0].mass * links[0].length
-        drive = draw.sinusoid(dice, scale * dice.uniform(0.3, 1.5), dice.uniform(1.0, 4.0))
-        found.append(E.Motor(1, sinusoid=drive))
+        found.append(draw.motor(dice, 1, scale * dice.uniform(0.3, 1.5), dice.uniform(1.0, 4.0)))
     scene = draw.scene_of(links, found, 9.807)
     start = draw.start(dice, n, (2.0, 3.0), (0.0, 0.0, 2.0))
     drawn = asked(dice, scene, start, 1.0, backward=0.0)
@@ -179,8 +177,7 @@ def stiff(seed: int) -> Drawn:
     if dice.chance(0.3):
         joint = dice.whole(1, n)
         strength = draw.weight_torque(links[joint - 1 :]) * dice.uniform(0, 0.5)
-        drive = draw.sinusoid(dice, strength, dice.decades(-0.5, 1.0))
-        found.append(E.Motor(joint, sinusoid=drive))
+        found.append(draw.motor(dice, joint, strength, dice.decades(-0.5, 1.0)))
     scene = draw.scene_of(links, found, dice.one_of(GRAVITIES))
     start = draw.start(dice, n, (0.3, 1.0, 2.0), (0.0, 1.0, 3.0))
     # A reference by explicit series takes a step for every few of these turns.
@@ -223,8 +220,7 @@ def contact(seed: int) -> Drawn:
         found.append(draw.damper(links, dice.whole(1, n), dice.decades(-2, 1)))
     if dice.chance(0.4):
         strength = draw.weight_torque(links[joint - 1 :]) * dice.uniform(0, 0.5)
-        drive = draw.sinusoid(dice, strength, dice.decades(-0.5, 1))
-        found.append(E.Motor(joint, sinusoid=drive))
+        found.append(draw.motor(dice, joint, strength, dice.decades(-0.5, 1)))
     if dice.chance(0.2):
         found.append(draw.spring(dice, links, dice.whole(1, n), dice.decades(0, 1)))
     scene = draw.scene_of(links, found, dice.one_of(GRAVITIES))
