@@ -123,7 +123,7 @@ def test_the_reference_knows_its_own_error(family: str) -> None:
     """More digits still confirm the error; the chains are short, since these digits take long."""
     few = [of for of in map(FAMILIES[family], range(30)) if len(of.q0) <= 2]
     for of in few[:2]:
-        t = np.linspace(of.t_start, of.t_start + 0.3 * (of.t_end - of.t_start), 20)
+        t = np.linspace(of.t_start, of.t_start + 0.2 * (of.t_end - of.t_start), 20)
         truth = Reference(of, 20.0).angles(t)
         finest = trajectory(of, QUAD)
         finest.extend(t[-1], monotonic() + 60)
