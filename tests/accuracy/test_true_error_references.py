@@ -20,11 +20,10 @@ pytest.importorskip("heyoka", reason="the references of true errors need heyoka"
 
 from true_error.arithmetic import LONG, QUAD
 from true_error.asked import Drawn, mass_matrix
-from true_error.curve import positions_apart
 from true_error.drawing import scene_of
 from true_error.families import FAMILIES
 from true_error.own_laws import LAWS, OwnLaw
-from true_error.reference import Reference, trajectory
+from true_error.reference import Reference, positions_apart, trajectory
 from true_error.switched import SwitchedTrajectory
 from true_error.switches import Friction
 from true_error.trajectory import NoReferenceError

@@ -11,22 +11,27 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import json
 import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pendcore as pc
 from tqdm import tqdm
 
-from fuzz import kept, watch
+from fuzz import watch
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import drawn
 from fuzz.shrinking import breaches_alone, kind, shrunk
 from fuzz.verdict import Verdict, of_number, seed_of
 
+FULL = 100_000
+"""Cases that a campaign has to have run for the page to be written."""
+BEGIN, END = "<!-- campaign: begin -->\n", "<!-- campaign: end -->"
 SHOWN = 3
 """Cases of one kind of failure that are made small."""
 
@@ -49,7 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one case, to be shown and made small")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz/report.txt"))
-    parser.add_argument("--page", type=Path, help=f"page of a campaign of {kept.FULL} or more")
+    parser.add_argument("--page", type=Path, help=f"page of a campaign of {FULL} or more")
     parser.add_argument("--record", type=Path, help="JSON that the page is made of")
     asked = parser.parse_args(arguments)
     if (asked.page is None) != (asked.record is None):
@@ -64,13 +69,17 @@ def main(arguments: list[str] | None = None) -> int:
     report = report_of(head, told, asked.seed, seconds)
     asked.output.parent.mkdir(parents=True, exist_ok=True)
     asked.output.write_text(report)
-    if asked.page and asked.cases >= kept.FULL:
-        kept.write(record_of(asked, told, seconds), asked.page, asked.record)
+    if asked.page and asked.cases >= FULL:
+        record = record_of(asked, told, seconds)
+        asked.record.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+        before, _, rest = asked.page.read_text(encoding="utf-8").partition(BEGIN)
+        shown = before + BEGIN + tables(record) + END + rest.partition(END)[2]
+        asked.page.write_text(shown, encoding="utf-8")
     print(report)
     return 1 if told.failed else 0
 
 
-def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Record:
+def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> dict[str, Any]:
     """Return what is kept of a campaign."""
     return {
         "seed": asked.seed,
@@ -85,6 +94,35 @@ def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Rec
         "pendcore": pc.__version__,
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
     }
+
+
+def tables(record: dict[str, Any]) -> str:
+    """Return what stands between the markers of the page."""
+    words = {"refused": "refused, with the reason", "not drawn": "not drawn: no such scene can be"}
+    seconds, longest = record["longest"]["seconds"], record["longest"]["case"]
+    facts = {
+        "seed": f"`{record['seed']}`",
+        "cases": f"{record['cases']:,}",
+        "failed": f"{record['failed']:,}",
+        "crashed or hung": f"{sum(record['outcomes'].get(x, 0) for x in ('crash', 'hang')):,}",
+        "longest case": f"{seconds:.1f} s (number {longest})",
+        "in all": f"{record['seconds']:,.0f} s, {record['workers']} processes",
+        "pendcore": record["pendcore"],
+        "date": record["date"],
+    }
+    lines = ["| | |", "|---|---|", *(f"| {name} | {fact} |" for name, fact in facts.items())]
+    lines += ["", "| outcome | cases |", "|---|--:|"]
+    cases: Counter[str] = Counter()
+    for outcome, count in record["outcomes"].items():  # the reason stands after a colon
+        cases[outcome.partition(":")[0]] += count
+    kinds = Counter(outcome.partition(":")[0] for outcome in record["outcomes"])
+    for name, count in cases.most_common():
+        text = words.get(name, f"`{name}`" if " " not in name else name)
+        of_kinds = f" ({kinds[name]} kinds)" if kinds[name] > 1 else ""
+        lines.append(f"| {text}{of_kinds} | {count:,} |")
+    if record["failed"]:
+        lines += ["", f"Failed: cases {', '.join(map(str, record['failures']))}."]
+    return "\n".join(lines) + "\n"
 
 
 def run(seed: str, cases: range, workers: int = 1) -> Told:

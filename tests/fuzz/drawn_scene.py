@@ -15,8 +15,7 @@ from pendcore._scene.effect_description import Description, Parameter
 from pendcore.effects import KINDS
 
 from fuzz import own_functions
-from fuzz.choices import Choices, happens
-from fuzz.quantities import angle, non_negative, signed, size
+from fuzz.choices import Choices, angle, happens, non_negative, signed, size
 
 KINDS_OF_NUMBERS = tuple(sorted(k for k, cls in KINDS.items() if not issubclass(cls, OwnEffect)))
 """The kinds of effects that are made of numbers."""

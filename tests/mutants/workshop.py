@@ -15,9 +15,8 @@ from pathlib import Path
 
 import pybind11
 
-from mutants import coverage_of_tests as coverage
+from mutants import which_tests as which
 from mutants.mutation import Mutant
-from mutants.related import related_first
 
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
@@ -60,7 +59,7 @@ class Workshop:
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
         self.installed()
         self.core = self.bytes_of_core()
-        self.contexts: dict[str, coverage.Contexts] = {}
+        self.contexts: dict[str, which.Contexts] = {}
 
     def measured(self) -> Outcome:
         """Run all tests without a mistake, and learn which of them run a line of the package."""
@@ -70,20 +69,20 @@ class Workshop:
             shutil.rmtree(data.parent, ignore_errors=True)
             data.parent.mkdir()
             settings = data.with_name("settings.ini")
-            settings.write_text(coverage.SETTINGS.format(data=data, source=SITE / "pendcore"))
+            settings.write_text(which.SETTINGS.format(data=data, source=SITE / "pendcore"))
             report = data.with_name("report.json")
             measuring = ["--cov", "--cov-context=test", "--cov-append"]
             measuring += [f"--cov-report=json:{report}", f"--cov-config={settings}"]
-            outcome = self.asked_of_tests(related_first(SOURCE, ""), more=measuring)
+            outcome = self.asked_of_tests(which.related_first(SOURCE, ""), more=measuring)
             if outcome.what != "alive":
                 return outcome
             report.rename(known)
-        self.contexts = coverage.told(known)
+        self.contexts = which.told(known)
         return Outcome("alive")
 
     def tested(self, mutant: Mutant) -> Outcome:
         """Return what becomes of a mutant; those tests run first that speak of its file."""
-        tests, kinds = related_first(SOURCE, mutant.path), KINDS
+        tests, kinds = which.related_first(SOURCE, mutant.path), KINDS
         file = SOURCE / mutant.path
         right = file.read_bytes()
         wrong = mutant.applied(right)
@@ -162,14 +161,12 @@ class Workshop:
         return process.returncode, said
 
 
-def those_that_run(
-    contexts: coverage.Contexts, line: int, source: str, files: list[str]
-) -> list[str]:
+def those_that_run(contexts: which.Contexts, line: int, source: str, files: list[str]) -> list[str]:
     """Return the tests that run a line, or may in a process of their own.
 
     There are none where it runs outside tests alone.
     """
-    tests = coverage.tests_that_run(contexts, source, line)
+    tests = which.tests_that_run(contexts, source, line)
     if not tests:
         return []
     tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 
+from true_error import reference as ref
 from true_error.asked import Drawn
-from true_error.curve import angles_apart, angles_of, positions_apart, times_of
 from true_error.drawing import Dice
 from true_error.reference import Reference, Truth
 from true_error.trajectory import NoReferenceError
@@ -184,8 +184,8 @@ def _asked_error(
             verdict.is_one_estimate = all(end == last for end in ends)
     dense = is_kept and drawn.is_dense
     with answering(verdict, seconds):
-        t = times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)
-        q = angles_of(sol, t, dense)
+        t = ref.times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)
+        q = ref.angles_of(sol, t, dense)
     began = monotonic()
     try:
         _compare(drawn, verdict, t, q, reference)
@@ -213,7 +213,7 @@ def _compare(drawn: Drawn, verdict: Verdict, t: Any, q: Any, reference: Referenc
 
 def _true_error(drawn: Drawn, q: Any, truth: Truth) -> float | None:
     """Return the true error, if the reference knows that, or that it is above what was asked."""
-    apart = positions_apart(drawn.scene, q, truth.angles)
+    apart = ref.positions_apart(drawn.scene, q, truth.angles)
     if not np.isfinite(apart).all():
         return np.inf
     known = truth.unsure <= SURE * drawn.error
@@ -233,11 +233,11 @@ def _valid_until(
         verdict.limit = drawn.limit
         verdict.valid_until = sol.valid_until(drawn.limit, time_limit=seconds)
     began = monotonic()
-    t = times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
+    t = ref.times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
     sign = np.sign(drawn.t_end - drawn.t_start)
     t = t[sign * t <= sign * verdict.valid_until]
     if len(t):
-        q = angles_of(sol, t, True)
+        q = ref.angles_of(sol, t, True)
         try:
             truth = reference.angles(t)
             if not _limit_known(drawn, verdict, q, t, truth):
@@ -249,7 +249,7 @@ def _valid_until(
 
 def _limit_known(drawn: Drawn, verdict: Verdict, q: Any, t: Any, truth: Truth) -> bool:
     known = truth.unsure_angle <= SURE * drawn.limit
-    past = np.flatnonzero(known & ~(angles_apart(q, truth.angles) <= drawn.limit))
+    past = np.flatnonzero(known & ~(ref.angles_apart(q, truth.angles) <= drawn.limit))
     if len(past):
         verdict.first_past = float(t[past[0]])
     verdict.limit_known = bool(known.all() or len(past))

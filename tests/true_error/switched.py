@@ -18,8 +18,15 @@ from true_error.asked import Drawn
 from true_error.constants import Parameters, inertia, smooth_torques
 from true_error.equations import System
 from true_error.switched_equations import SLOTS, SwitchedSystem, switched
-from true_error.switches import NEVER, Friction, Pieces, Stop, smooth_own_torques, switches_of
-from true_error.tables import tables_of
+from true_error.switches import (
+    NEVER,
+    Friction,
+    Pieces,
+    Stop,
+    smooth_own_torques,
+    switches_of,
+    tables_of,
+)
 from true_error.trajectory import NoReferenceError, Trajectory
 
 CLEAR = 1e-9

@@ -1,9 +1,12 @@
-"""Which tests run a line of the package, as coverage.py tells: the others cannot notice it."""
+"""Which tests can notice a mutant: those that run its line; first those that speak of its file."""
 
 from __future__ import annotations
 
 import ast
 import json
+import re
+from functools import cache
+from math import log, sqrt
 from pathlib import Path
 
 SETTINGS = """\
@@ -45,3 +48,32 @@ def statement_at(source: str, line: int) -> tuple[int, int]:
             if node.lineno <= line <= max(end, node.lineno):
                 spans.append((node.lineno, max(end, node.lineno)))
     return max(spans[1:] or spans, key=lambda span: span[0])
+
+
+def related_first(root: Path, path: str) -> list[str]:
+    """Return all files of tests, first those that share most rare words with a file."""
+    tests = words_of_tests(root)
+    if not path:
+        return sorted(tests)
+    words = words_of((root / path).read_text() + path.replace("_", " "))
+    held = [words & of_test for of_test in tests.values()]
+    weight = {
+        word: log(len(tests) / sum(word in one for one in held)) for one in held for word in one
+    }
+
+    def likeness(test: str) -> float:
+        return sum(weight[word] for word in words & tests[test]) / sqrt(len(tests[test]))
+
+    return sorted(tests, key=likeness, reverse=True)
+
+
+@cache
+def words_of_tests(root: Path) -> dict[str, frozenset[str]]:
+    files = sorted((root / "tests").rglob("test_*.py"))
+    # Those are about what pip installs, and a workshop installs nothing.
+    files = [file for file in files if file.parent.name != "packaging"]
+    return {str(file.relative_to(root)): words_of(file.read_text()) for file in files}
+
+
+def words_of(text: str) -> frozenset[str]:
+    return frozenset(re.findall(r"[A-Za-z_]{4,}", text))
