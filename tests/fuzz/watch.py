@@ -17,7 +17,8 @@ from fuzz.verdict import Verdict
 
 HANGS_AFTER = 60.0
 """s without an answer: twelve time limits."""
-SPAWN = multiprocessing.get_context("spawn")
+FORKS = multiprocessing.get_context("forkserver")
+FORKS.set_forkserver_preload(["fuzz.verdict"])  # so that a process is there at once
 
 Case = TypeVar("Case")
 Judge = Callable[[Case], Verdict]
@@ -39,8 +40,8 @@ class Worker:
     def __init__(self, judge: Judge[Case]) -> None:
         self.folder = TemporaryDirectory()
         self.errors = Path(self.folder.name, "errors")
-        self.pipe, theirs = SPAWN.Pipe()
-        self.process = SPAWN.Process(target=work, args=(judge, theirs, str(self.errors)))
+        self.pipe, theirs = FORKS.Pipe()
+        self.process = FORKS.Process(target=work, args=(judge, theirs, str(self.errors)))
         self.process.start()
         theirs.close()
         self.pipe.recv()
