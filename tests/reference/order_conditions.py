@@ -97,14 +97,9 @@ def density(tree: Tree) -> int:
 
 
 class StageWeights:
-    """Phi_i(t) of every stage i of a method, for any tree.
+    """Phi_i(t) of every stage i of a method, for any tree; those of hanging trees are found once.
 
-    The weights of trees that hang from others are found once.
-
-    Parameters
-    ----------
-    a
-        The matrix of the method; rows may be short. Its numbers only need to add and multiply.
+    ``a`` is the matrix of the method; rows may be short. Its numbers only need to add and multiply.
     """
 
     def __init__(self, a: Sequence[Sequence[Any]]) -> None:

@@ -70,22 +70,10 @@ def asked(
     decades: tuple[float, float] = (-12.0, -2.0),
     turns: float = TURNS,
 ) -> Drawn:
-    """Return a scene with all that is asked of it.
+    """Return a scene with all that is asked of it, from its angles and rates at the start.
 
-    Parameters
-    ----------
-    dice
-        What it is drawn from: those of a family's seed.
-    scene, start
-        The scene, and its angles and rates at the start, rad and rad/s.
-    span : float
-        The longest span, s; it is shorter if the scene is fast.
-    backward : float
-        The share of runs that go back in time.
-    decades : (float, float)
-        The decades between which the error lies.
-    turns : float
-        The most turns that the fastest motion at the start may make.
+    The span, s, is shorter if the scene is fast: the fastest motion at the start may make so many
+    turns. A share of runs goes back in time; the error lies between two decades.
     """
     q0, qd0 = (tuple(map(float, values)) for values in start)
     motion, decay = rates(scene, q0, qd0)

@@ -29,34 +29,20 @@ LOST = 0.02
 
 
 class Truth(NamedTuple):
-    """Where a chain truly is at some times.
-
-    Attributes
-    ----------
-    angles : ndarray, (n_t, n)
-        Absolute angles, rad.
-    unsure, unsure_angle : ndarrays, (n_t,)
-        The error of positions, as a share of the total length, and of angles, rad, up to each of
-        the times; infinite where it is not known.
-    coarse : ndarray, (n_t,)
-        The error of the same integrator in numbers of fewer bits, as a share of the total length.
-    """
+    """Where a chain truly is at n_t times; positions are shares of the total length."""
 
     angles: Longs
+    """Absolute angles, (n_t, n), rad."""
     unsure: Floats
+    """The error of positions up to each of the times, (n_t,); infinite where it is not known."""
     unsure_angle: Floats
+    """The same of angles, rad."""
     coarse: Floats
+    """The error of the same integrator in numbers of fewer bits, (n_t,)."""
 
 
 class Reference:
-    """The truth of a drawn scene.
-
-    Parameters
-    ----------
-    drawn : Drawn
-    seconds : float
-        The time that all of it may take.
-    """
+    """The truth of a drawn scene; all of it may take so many seconds."""
 
     def __init__(self, drawn: Drawn, seconds: float) -> None:
         self.drawn = drawn
@@ -66,16 +52,8 @@ class Reference:
     def angles(self, t: Floats, *, finest: bool = False) -> Truth:
         """Return the absolute angles at times (n_t,), s, in the order of the run.
 
-        Parameters
-        ----------
-        t : ndarray, (n_t,)
-        finest : bool
-            Whether to ask for the most digits, which takes a hundred times longer.
-
-        Raises
-        ------
-        NoReferenceError
-            Where they cannot be computed, or not in time.
+        The most digits, ``finest``, take a hundred times longer. Where angles cannot be computed,
+        or not in time, that is a `NoReferenceError`.
         """
         coarse, fine = self._ladder[1:] if finest else self._ladder[:2]
         began = monotonic()

@@ -53,23 +53,14 @@ NEVER = Line({}, -inf, inf)
 
 @dataclass
 class Pieces:
-    """A law that is another one on each side of some values of x.
-
-    Attributes
-    ----------
-    weights : dict
-        What x is.
-    bounds : tuple
-        Between the pieces, rising.
-    laws : tuple of dict
-        The parameters of each, one more than bounds.
-    piece : int
-        In which it is.
-    """
+    """A law that is another one on each side of some values of x; it is in one of its pieces."""
 
     weights: dict[str, Fraction]
+    """What x is."""
     bounds: tuple[Fraction, ...]
+    """Between the pieces, rising."""
     laws: tuple[Parameters, ...]
+    """The parameters of each piece: one more than bounds."""
     piece: int = 0
 
     def parameters(self) -> Parameters:
