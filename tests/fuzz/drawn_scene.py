@@ -49,7 +49,7 @@ class SceneMaker:
         """Return an effect of a kind, or None where eight tries met values that do not agree."""
         if kind == "user":
             name = self.choices.one_of(own_functions.NAMES)
-            return own_functions.effect(name, self.n)
+            return pc.effects.User(own_functions.Forces(name, self.n))
         for _ in range(8):
             try:
                 return self.of(KINDS[kind])

@@ -54,9 +54,6 @@ class Mutant:
     before: str
     after: str
 
-    def __str__(self) -> str:
-        return f"{self.path}:{self.line}: {self.kind}: {self.before!r} -> {self.after!r}"
-
     def applied(self, source: bytes) -> bytes:
         return source[: self.start] + self.after.encode() + source[self.end :]
 
