@@ -178,7 +178,7 @@ def test_a_law_that_is_not_smooth_is_never_called_kept():
     scene = BOOK.replace(effects=[E.User(lambda t, q, qd: 1e-6 * noise.normal(size=2))])
     is_refused = False
     try:
-        how = {"error": 1e-9, "max_steps": 2000, "on_failure": "ignore"}
+        how = {"error": 1e-9, "max_steps": 500, "on_failure": "ignore"}
         sol = pc.simulate(scene, q0=[0.7, 1.0], t_span=(0, 0.5), **how)
     except pc.AccuracyError as refusal:
         sol, is_refused = refusal.solution, True

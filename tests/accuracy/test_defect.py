@@ -10,8 +10,6 @@ import pendcore as pc
 import pytest
 from pendcore import _core
 from pendcore import effects as fx
-from reference.inverse_dynamics import joint_couples
-from reference.newton_euler import Body
 
 METHODS = {method["name"]: method for method in _core.methods()}
 BOOK = pc.Scene.textbook()
@@ -34,10 +32,34 @@ def run(scene: pc.Scene, method: str, t_end: float = 1.0, **options: Any) -> pc.
     return pc.simulate(scene, q0=q0, qd0=qd0, t_span=(0, t_end), method=method, **options)
 
 
+def joint_couples(scene: pc.Scene, q: list[Any], qd: list[Any], qdd: list[Any]) -> list[Any]:
+    """Return the couple of each joint on the link beyond it that a motion takes, N m.
+
+    It carries all that lies beyond it: about the joint, where it is at that moment,
+
+        tau_j = sum over i >= j of  I_i alpha_i + (C_i - P_j) x m_i (a_Ci - g).
+
+    Vectors are complex numbers x + i y: a x b = Im(conj(a) b).
+    """
+    joint = moving = mpmath.mpc(0)  # where the joint is, and its acceleration
+    found = []
+    for link, angle, rate, acceleration in zip(scene.links, q, qd, qdd, strict=True):
+        along = mpmath.expj(angle)
+        turning = along * (1j * acceleration - rate**2)  # of a point at unit distance
+        pull = link.mass * (moving + link.center * turning - 1j * mpmath.mpf(scene.gravity))
+        found.append((joint, joint + link.center * along, pull, link.inertia * acceleration))
+        joint += link.length * along
+        moving += link.length * turning
+    couples = []
+    for j, (pivot, *_) in enumerate(found):
+        beyond = [spin + (mpmath.conj(c - pivot) * pull).imag for _, c, pull, spin in found[j:]]
+        couples.append(sum(beyond))
+    return couples
+
+
 def exact_couples(sol: pc.Solution) -> np.ndarray:
     """Return each step's largest couples on the same curve and grid, in forty digits."""
     state, n = sol._run.__getstate__(), len(sol.scene.links)
-    bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in sol.scene.links]
     steps = len(state["dense_h"])
     rows = np.asarray(state["dense_coefficients"]).reshape(steps, -1, 2 * n)
     grid = 4 * rows.shape[1]
@@ -57,7 +79,7 @@ def exact_couples(sol: pc.Solution) -> np.ndarray:
                 q = [a + h * value(s, theta) for a, s in zip(angles, sums, strict=True)]
                 qd = [value(w, theta) for w in rates]
                 qdd = [value(s, theta) / h for s in slopes]
-                couples = joint_couples(bodies, sol.scene.gravity, q, qd, qdd)
+                couples = joint_couples(sol.scene, q, qd, qdd)
                 largest[step] = np.maximum(largest[step], [float(abs(c)) for c in couples])
             angles = [a + h * value(s, 1) for a, s in zip(angles, sums, strict=True)]
     return largest

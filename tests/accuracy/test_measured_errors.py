@@ -29,8 +29,7 @@ def tips(scene: pc.Scene, q: Any) -> Any:
 @pytest.mark.parametrize("error", [1e-3, 1e-6, 1e-9])
 def test_the_error_is_kept_against_multiple_precision(reference_case, name, error):
     known = reference_case(name)
-    links = [pc.Link(mass=m, length=x) for m, x in zip(known.masses, known.lengths, strict=True)]
-    scene = pc.Scene(links=links, gravity=known.gravity)
+    scene = known.scene
     span = (known.t[0], known.t[-1])
     sol = pc.simulate(scene, q0=known.q0, qd0=known.qd0, t_span=span, t_eval=known.t, error=error)
     apart = abs(tips(scene, sol.q) - tips(scene, known.q)).max()

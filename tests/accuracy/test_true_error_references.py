@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import fields, replace
 from inspect import signature
 from time import monotonic
@@ -15,21 +14,18 @@ import pytest
 from reference.effects import law
 from reference.newton_euler import Body
 from reference.rig import Rig
-from reference.trajectories import Trajectory as Digits
 from reference.trajectories import trajectory as of_digits
 
 pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
 
 from true_error.arithmetic import LONG, QUAD
-from true_error.curve import positions_apart
-from true_error.drawn import Drawn
+from true_error.asked import Drawn, mass_matrix
+from true_error.drawing import scene_of
 from true_error.families import FAMILIES
 from true_error.own_laws import LAWS, OwnLaw
-from true_error.rates import mass_matrix
-from true_error.reference import Reference, trajectory
+from true_error.reference import Reference, positions_apart, trajectory
 from true_error.switched import SwitchedTrajectory
 from true_error.switches import Friction
-from true_error.tables import bends
 from true_error.trajectory import NoReferenceError
 
 pytestmark = pytest.mark.unsanitized
@@ -39,13 +35,10 @@ J = 1.7 * 0.6**2 / 3
 
 def drawn(
     effects: list[Any], q0: tuple[float, ...], qd0: tuple[float, ...], t_end: float,
-    gravity: float = 0.0, links: list[pc.Link] | None = None,
+    gravity: float = 0.0,
 ) -> Drawn:  # fmt: skip
-    """Return a scene of rods of inertia J about their joints, unless other links are given."""
-    links = links or [pc.Link(mass=1.7, length=0.6)] * len(q0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", pc.PendcoreWarning)
-        scene = pc.Scene(links=links, effects=effects, gravity=gravity)
+    """Return a scene of rods of inertia J about their joints."""
+    scene = scene_of([pc.Link(mass=1.7, length=0.6)] * len(q0), effects, gravity)
     return Drawn(
         family="exact", seed=0, scene=scene, q0=q0, qd0=qd0, t_start=0.0, t_end=t_end,
         error=1e-9, rtol=1e-9, limit=0.1,
@@ -67,11 +60,9 @@ def angle(of: Drawn, *times: float) -> Any:
 )
 def test_trajectories_of_forty_digits(name: str) -> None:
     """The trajectories were integrated from other equations, in another arithmetic."""
-    case: Digits = of_digits(name)
-    links = [pc.Link(mass=m, length=x) for m, x in zip(case.masses, case.lengths, strict=True)]
-    damping = [E.ViscousJoint(j, b) for j, b in enumerate(case.damping, start=1) if b]
+    case = of_digits(name)
     start = tuple(map(float, case.q0)), tuple(map(float, case.qd0))
-    of = drawn(damping, *start, float(case.t[-1]), case.gravity, links)
+    of = replace(drawn([], *start, float(case.t[-1])), scene=case.scene)
     truth = Reference(of, 20.0).angles(case.t)
     apart = positions_apart(of.scene, case.q, truth.angles)
     assert apart.max() < 1e-15 + 10 * truth.unsure.max()
@@ -131,7 +122,7 @@ def test_the_reference_knows_its_own_error(family: str) -> None:
     """More digits still confirm the error; the chains are short, since these digits take long."""
     few = [of for of in map(FAMILIES[family], range(30)) if len(of.q0) <= 2]
     for of in few[:2]:
-        t = np.linspace(of.t_start, of.t_start + 0.3 * (of.t_end - of.t_start), 20)
+        t = np.linspace(of.t_start, of.t_start + 0.2 * (of.t_end - of.t_start), 20)
         truth = Reference(of, 20.0).angles(t)
         finest = trajectory(of, QUAD)
         finest.extend(t[-1], monotonic() + 60)
@@ -139,62 +130,94 @@ def test_the_reference_knows_its_own_error(family: str) -> None:
         assert (apart <= truth.unsure + 1e-18).all()
 
 
-# Friction and stops: what can be said exactly --------------------------------------------------
+# Rods whose motion can be said exactly ---------------------------------------------------------
+
+Exact = tuple[Drawn, dict[float, float]]
+"""A rod, and its angle at some times."""
 
 
-def test_a_rod_that_rubs_stops_where_its_momentum_ends() -> None:
-    of = drawn([E.DryJointFriction(1, 0.3)], (0.2,), (3.0,), 5.0)
-    ends = J * 3.0 / 0.3
-    found = angle(of, ends / 2, ends, 5.0)
-    assert found[0] == pytest.approx(0.2 + 3.0 * ends / 2 - 0.3 / J * ends**2 / 8, rel=1e-14)
-    assert found[1:] == pytest.approx(0.2 + J * 9.0 / (2 * 0.3), rel=1e-14)
+def stopped_by_friction(rate: float = 3.0, torque: float = 0.3) -> Exact:
+    end = J * rate / torque
+    far, half = J * rate**2 / (2 * torque), rate * end / 2 - torque / J * end**2 / 8
+    of = drawn([E.DryJointFriction(1, torque)], (0.2,), (rate,), 5.0)
+    return of, {end / 2: 0.2 + half, end: 0.2 + far, 5.0: 0.2 + far}
 
 
-@pytest.mark.parametrize("exponent", [1.0, 2.0])
-@pytest.mark.parametrize("velocity", [0.003, 0.5])
-def test_a_rod_with_a_static_peak_comes_as_far_as_an_integral_says(
-    exponent: float, velocity: float
-) -> None:
+def stopped_by_a_peak(velocity: float, exponent: float) -> Exact:
     """The peak is narrow, and a step that begins far from it does not see it."""
-    peak = E.DryJointFriction(1, 0.3, static=0.9, stribeck_velocity=velocity, exponent=exponent)
-    found = angle(drawn([peak], (0.0,), (3.0,), 5.0), 5.0)[0]
 
     def slowed(w: Any) -> Any:
         return w * J / (0.3 + 0.6 * mpmath.exp(-((w / velocity) ** exponent)))
 
-    turned = mpmath.quad(slowed, [0, velocity, 3 * velocity, 10 * velocity, 3])
-    assert float(found) == pytest.approx(float(turned), rel=1e-12)
+    turned = mpmath.quad(slowed, [0, *np.geomspace(velocity, 3, 8)])
+    peak = E.DryJointFriction(1, 0.3, static=0.9, stribeck_velocity=velocity, exponent=exponent)
+    return drawn([peak], (0.0,), (3.0,), 5.0), {5.0: float(turned)}
 
 
-def test_a_rod_on_a_spring_turns_back_where_friction_says() -> None:
-    k, tc, start = 20.0, 0.5, 0.4
-    rubs = [E.TorsionalSpring(1, k), E.DryJointFriction(1, tc)]
-    of = drawn(rubs, (start,), (0.0,), 5.0)
+def turning_back(k: float = 20.0, torque: float = 0.5) -> Exact:
+    """A spring drives it back until friction holds it."""
+    swings = [0.4]
+    while k * abs(swings[-1]) > torque:
+        swings.append(-(swings[-1] - np.sign(swings[-1]) * 2 * torque / k))
+    rubs = [E.TorsionalSpring(1, k), E.DryJointFriction(1, torque)]
     turns = np.pi * np.sqrt(J / k) * np.arange(1, 5)
-    swings = [start]
-    while k * abs(swings[-1]) > tc:
-        swings.append(-(swings[-1] - np.sign(swings[-1]) * 2 * tc / k))
-    found = np.asarray(angle(of, *turns, 5.0), float)
-    np.testing.assert_allclose(found, [*swings[1:5], swings[-1]], rtol=1e-13, atol=1e-15)
+    known = dict(zip(turns, swings[1:5], strict=True)) | {5.0: swings[-1]}
+    return drawn(rubs, (0.4,), (0.0,), 5.0), known
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
-def test_a_rod_that_is_pushed_against_a_stop_bounces_as_it_must(restitution: float) -> None:
-    push, capture = 2.0, 0.05
+def bouncing(restitution: float, push: float = 2.0, capture: float = 0.05) -> Exact:
+    """A motor pushes it against a stop, where it rests in the end unless the stop is elastic."""
     stop = E.JointStop(1, (-np.inf, 1.0), restitution=restitution, capture_speed=capture)
-    of = drawn([E.Motor(1, constant=push), stop], (0.0,), (0.0,), 4.0)
     a = push / J
-    first, speed = np.sqrt(2 / a), np.sqrt(2 * a)
-    tops, t = [], first
-    while speed * restitution and speed > capture and t < 4.0:
+    t, speed, tops = np.sqrt(2 / a), np.sqrt(2 * a), {}
+    while speed * restitution and speed > capture and t + restitution * speed / a < 4.0:
         speed *= restitution
-        tops.append((t + speed / a, 1.0 - speed**2 / (2 * a)))
+        tops[t + speed / a] = 1.0 - speed**2 / (2 * a)
         t += 2 * speed / a
-    times, highest = zip(*[top for top in tops if top[0] < 4.0], strict=True) if tops else ((), ())
-    found = np.asarray(angle(of, *times, 4.0), float)
-    np.testing.assert_allclose(found[:-1], highest, rtol=1e-13, atol=1e-15)
-    if restitution < 1:
-        assert found[-1] == 1.0
+    at_rest = {4.0: 1.0} if restitution < 1 else {}
+    return drawn([E.Motor(1, constant=push), stop], (0.0,), (0.0,), 4.0), tops | at_rest
+
+
+def following_a_table() -> Exact:
+    t, torque = [0.0, 1.0, 1.5, 4.0], [0.0, 2.0, -3.0, 1.0]
+    turned = mpmath.quad(lambda s: (3 - s) * np.interp(float(s), t, torque) / J, [0, 1, 1.5, 3])
+    table = E.Motor(1, table=E.Table(t, torque))
+    return drawn([table], (0.1,), (0.2,), 3.0), {3.0: 0.1 + 0.6 + float(turned)}
+
+
+def slowed_by_a_square(damper: Any) -> Exact:
+    turned = -J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J)
+    return drawn([damper], (0.0,), (-3.0,), 5.0), {5.0: turned}
+
+
+def pushed_by_a_pulse() -> Exact:
+    """It is short and far ahead, and no step may go past it."""
+    turned = 2.0 * 0.01 * np.sqrt(np.pi) / J * 2.0
+    pulse = E.User(OwnLaw("pulse", 1, (2.0, 3.0, 0.01)))
+    return drawn([pulse], (0.0,), (0.0,), 5.0), {5.0: turned}
+
+
+EXACT = {
+    "friction": stopped_by_friction(),
+    **{f"peak at {v}, {p}": stopped_by_a_peak(v, p) for v in (0.003, 0.5) for p in (1.0, 2.0)},
+    "spring and friction": turning_back(),
+    **{f"restitution {e}": bouncing(e) for e in (0.0, 0.5, 1.0)},
+    "table": following_a_table(),
+    "pulse": pushed_by_a_pulse(),
+    "quadratic": slowed_by_a_square(E.ViscousJoint(1, 0.0, damping2=0.4)),
+    "own quadratic": slowed_by_a_square(E.User(OwnLaw("quadratic damper", 1, (0.4,)))),
+}
+
+
+@pytest.mark.every_value("name")
+@pytest.mark.parametrize("name", EXACT)
+def test_a_rod_moves_as_a_closed_form_or_an_integral_says(name: str) -> None:
+    of, known = EXACT[name]
+    found = np.asarray(angle(of, *known), float)
+    np.testing.assert_allclose(found, [*known.values()], rtol=1e-14, atol=1e-15)
+
+
+# Chains, and joints that hold ------------------------------------------------------------------
 
 
 def test_an_impact_of_a_chain_keeps_what_it_must() -> None:
@@ -235,43 +258,6 @@ def test_a_joint_holds_to_the_last_bit_and_gives_way() -> None:
     held.extend(gives_way + 1e-6, monotonic() + 5)
     assert isinstance(held.switches[0], Friction)
     assert held.switches[0].sign == 1
-
-
-# Tables, splines, laws of one's own ------------------------------------------------------------
-
-
-def test_a_table_of_torque_turns_a_rod_as_its_integral_does() -> None:
-    t, torque = [0.0, 1.0, 1.5, 4.0], [0.0, 2.0, -3.0, 1.0]
-    of = drawn([E.Motor(1, table=E.Table(t, torque))], (0.1,), (0.2,), 3.0)
-    turned = mpmath.quad(lambda s: (3 - s) * np.interp(float(s), t, torque) / J, [0, 1, 1.5, 3])
-    assert float(angle(of, 3.0)[0]) == pytest.approx(0.1 + 0.6 + float(turned), rel=1e-12)
-
-
-def test_a_natural_spline_has_no_kinks() -> None:
-    t, x = (0.0, 0.7, 1.0, 2.5), (0.3, -1.0, 2.0, 0.4)
-    m = [float(value) for value in bends(t, x)]
-    assert m[0] == m[-1] == 0.0
-    h = np.diff(t)
-    rise, bend = np.diff(x) / h, np.array(m)
-    after = rise - h * (2 * bend[:-1] + bend[1:]) / 6
-    before = rise + h * (bend[:-1] + 2 * bend[1:]) / 6
-    assert before[:-1] == pytest.approx(after[1:], rel=1e-13)
-
-
-def test_a_short_pulse_far_ahead_is_not_stepped_over() -> None:
-    pulse = OwnLaw("pulse", 1, (2.0, 3.0, 0.01))
-    of = drawn([E.User(pulse)], (0.0,), (0.0,), 5.0)
-    turned = 2.0 * 0.01 * np.sqrt(np.pi) / J * 2.0
-    assert float(angle(of, 5.0)[0]) == pytest.approx(turned, rel=1e-12)
-
-
-def test_quadratic_damping_slows_a_rod_like_one_over_time() -> None:
-    for damping in (
-        E.ViscousJoint(1, 0.0, damping2=0.4),
-        E.User(OwnLaw("quadratic damper", 1, (0.4,))),
-    ):
-        found = angle(drawn([damping], (0.0,), (-3.0,), 5.0), 5.0)[0]
-        assert float(found) == pytest.approx(-J / 0.4 * np.log1p(0.4 * 3.0 * 5.0 / J), rel=1e-13)
 
 
 def test_laws_that_change_side_at_one_time_all_do() -> None:

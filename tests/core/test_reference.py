@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from reference import chain, dormand_prince
 from reference.arithmetic import Number, multiple_precision
-from reference.conserved import angular_momentum, energy, mass_centers
 from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
 from reference.order_conditions import order_of, trees
+from reference.rig import Rig
 from reference.trajectories import Trajectory, names, trajectory
 
 pytestmark = pytest.mark.unsanitized
@@ -22,6 +22,7 @@ BODIES = [
 Q, QD, COUPLES = [0.3, -2.1, 4.0, 1.2], [1.5, -3.0, 0.2, 6.0], [0.4, -0.7, 2.0, 0.1]
 GRAVITY = 9.81
 FIFTY = multiple_precision(50)
+RIG = Rig(bodies=BODIES, gravity=GRAVITY, arithmetic=FIFTY)
 ROOTED_TREES = [1, 1, 2, 4, 9, 20, 48, 115]  # of 1, 2, ... nodes
 
 
@@ -50,7 +51,7 @@ def motion() -> Motion:
 @pytest.mark.parametrize("i", range(len(BODIES)))
 def test_mass_centres_move_as_newton_says_and_as_their_positions_do(i, axis, motion) -> None:
     acceleration = motion.center_accelerations[i][axis]
-    position = derivative(lambda s: mass_centers(BODIES, *moved(s), FIFTY)[i][axis], 2)
+    position = derivative(lambda s: RIG.instant(0, *moved(s)).mass_center(i + 1)[axis], 2)
     assert abs(acceleration - position) < 1e-18
     mass, reactions = FIFTY.number(BODIES[i].mass), [*motion.reactions, (0, 0)]
     weight = mass * FIFTY.number(GRAVITY) if axis == 1 else 0
@@ -59,15 +60,15 @@ def test_mass_centres_move_as_newton_says_and_as_their_positions_do(i, axis, mot
 
 
 def test_the_energy_grows_by_the_power_of_the_couples() -> None:
-    power = derivative(lambda s: sum(energy(BODIES, GRAVITY, *moved(s), FIFTY)))
+    power = derivative(lambda s: sum(RIG.energy(0, *moved(s))))
     relative_rates = np.diff([0.0, *QD])
     assert float(power) == pytest.approx(float(np.dot(COUPLES, relative_rates)), rel=1e-14)
 
 
 def test_the_angular_momentum_grows_by_the_moments_about_the_pivot() -> None:
-    centers = mass_centers(BODIES, Q, QD, FIFTY)
+    centers = RIG.instant(0, Q, QD).mass_centers()
     moment = sum(b.mass * GRAVITY * x for b, (x, *_) in zip(BODIES, centers, strict=True))
-    rate = derivative(lambda s: angular_momentum(BODIES, *moved(s), FIFTY))
+    rate = derivative(lambda s: RIG.angular_momentum(*moved(s)))
     assert float(rate) == pytest.approx(float(moment + COUPLES[0]), rel=1e-14)
 
 
@@ -105,8 +106,7 @@ BOUNDS = {
 
 
 def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince.Run:
-    how = {"rtol": tolerance, "atol": tolerance, "damping": case.damping}
-    return chain.simulate(case.bodies, case.gravity, case.q0, case.qd0, (0.0, t_end), **how)
+    return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance)
 
 
 @pytest.mark.parametrize("name", names())

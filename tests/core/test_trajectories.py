@@ -31,20 +31,15 @@ BOUNDS = {
 def solve(
     case: Trajectory, t_end: float, tolerance: float, method: str = "dopri5", **options: Any
 ) -> pc.Solution:
-    rods = zip(case.masses, case.lengths, strict=True)
-    dampers = [pc.effects.ViscousJoint(joint, b) for joint, b in enumerate(case.damping, 1) if b]
-    links = [pc.Link(mass=m, length=length) for m, length in rods]
-    scene = pc.Scene(links=links, gravity=case.gravity, effects=dampers)
     options |= {"method": method, "rtol": tolerance, "atol": tolerance}
-    sol = pc.simulate(scene, (0.0, t_end), case.q0, case.qd0, **options)
+    sol = pc.simulate(case.scene, (0.0, t_end), case.q0, case.qd0, **options)
     assert sol.success
     return sol
 
 
 def written_out(case: Trajectory, t_end: float, tolerance: float, **options: Any) -> Any:
     """Return the same run by the method written out in Python."""
-    how = {"rtol": tolerance, "atol": tolerance, **options}
-    return chain.simulate(case.bodies, case.gravity, case.q0, case.qd0, (0.0, t_end), **how)
+    return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance, **options)
 
 
 @pytest.mark.every_value("name")

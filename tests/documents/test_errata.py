@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from reference import printed_equations as printed
 from reference.arithmetic import multiple_precision
-from reference.conserved import energy
 from reference.dormand_prince import Array, Run, StepTooSmallError, integrate
 from reference.newton_euler import Body, newton_euler, uniform_rod
 from reference.printed_equations import ALL_REPAIRS, AS_PRINTED, Instant, Pendulum, Repairs
+from reference.rig import Rig
 
 G = 9.807
 TEXTBOOK = Pendulum()
@@ -37,12 +37,12 @@ def true_instant(p: Pendulum, gravity: float, state: list[float]) -> Instant:
 
 def power(p: Pendulum, gravity: float, state: list[float], qdd: tuple[float, float]) -> float:
     """Return the rate of change of the energy under the given accelerations."""
-    s = FORTY.number("1e-15")
+    s, rig = FORTY.number("1e-15"), Rig(bodies=bodies(p), gravity=gravity, arithmetic=FORTY)
 
     def ahead(s: float) -> float:
         q = [x + s * w + s * s / 2 * a for x, w, a in zip(state[:2], state[2:], qdd, strict=True)]
         qd = [w + s * a for w, a in zip(state[2:], qdd, strict=True)]
-        return sum(energy(bodies(p), gravity, q, qd, FORTY))
+        return sum(rig.energy(0, q, qd))
 
     return float((ahead(s) - ahead(-s)) / (2 * s))
 
@@ -200,8 +200,9 @@ def test_from_the_texts_initial_state_the_printed_equations_break_down(
 
 def test_as_printed_the_textbooks_pendulum_gains_5_joules_in_0_08_s() -> None:
     def gain(r: Run, gravity: float) -> float:
+        rig = Rig(bodies=bodies(TEXTBOOK), gravity=gravity)
         states = [y.tolist() for y in (r.y[0], r.y[-1])]
-        start, end = (sum(energy(bodies(TEXTBOOK), gravity, y[:2], y[2:])) for y in states)
+        start, end = (sum(rig.energy(0, y[:2], y[2:])) for y in states)
         return float(end - start)
 
     wrong = run(TEXTBOOK, 0.08, as_printed=True)

@@ -21,8 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 from reference.arithmetic import Number, multiple_precision
-from reference.effects import LAWS, Described, law
-from reference.effects.torsional_spring import TorsionalSpring
+from reference.effects import LAWS, Described, TorsionalSpring, law
 from reference.instant import Instant
 from reference.newton_euler import Body
 from reference.random_rigs import START, DrawnRig, rigs
@@ -62,7 +61,7 @@ def check_instant(drawn: DrawnRig) -> None:
     reach = pivot[0] + np.cumsum([0.0, *lengths])
     joints = [(joint.x, joint.y) for joint in instant.joints]
     assert_close(now.positions()[0], joints, reach[:, np.newaxis] + 1)
-    centers = [instant.mass_center(link)[:2] for link in range(1, n + 1)]
+    centers = [center[:2] for center in instant.mass_centers()]
     assert_close(now.mass_centers()[0], centers, reach[1:, np.newaxis] + 1)
 
     turns = np.abs(qd) + np.abs([0.0, *qd[:-1]])

@@ -233,14 +233,13 @@ def test_a_rod_swings_with_the_period_of_elliptic_integrals(sign, fine):
 def test_sections_are_where_the_multiple_precision_references_are(name, reference_case):
     """The run passes the angle that the reference has at a time, at that time."""
     case = reference_case(name)
-    links = [pc.Link(mass=m, length=L) for m, L in zip(case.masses, case.lengths, strict=True)]
     wanted, expected = [], []
     for k in range(1, len(case.t) - 1):
         if (np.abs(case.qd[k]) > 0.1).all():
             for i, (q, qd) in enumerate(zip(case.q[k], case.qd[k], strict=True), start=1):
                 wanted.append(ev.LinkAngle(i, q, direction=int(np.sign(qd))))
                 expected.append((case.t[k], case.q[k], case.qd[k]))
-    scene, how = pc.Scene(links=links, gravity=case.gravity), {"rtol": 1e-14, "atol": 1e-15}
+    scene, how = case.scene, {"rtol": 1e-14, "atol": 1e-15}
     sol = pc.simulate(scene, (0, case.t[-1]), case.q0, case.qd0, events=wanted, **how)
     assert len(expected) > 20
     for found, (t, q, qd) in zip(sol.events, expected, strict=True):

@@ -11,23 +11,27 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import json
 import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pendcore as pc
 from tqdm import tqdm
 
-from fuzz import kept, watch
+from fuzz import watch
 from fuzz.choices import FromSeed
 from fuzz.drawn_run import drawn
 from fuzz.shrinking import breaches_alone, kind, shrunk
-from fuzz.worker import seed_of
+from fuzz.verdict import Verdict, of_number, seed_of
 
-WORKER = [sys.executable, "-m", "fuzz.worker"]
+FULL = 100_000
+"""Cases that a campaign has to have run for the page to be written."""
+BEGIN, END = "<!-- campaign: begin -->\n", "<!-- campaign: end -->"
 SHOWN = 3
 """Cases of one kind of failure that are made small."""
 
@@ -37,7 +41,7 @@ class Told:
     """How often each outcome occurred, what failed, and seconds and number of the longest case."""
 
     outcomes: Counter[str] = field(default_factory=Counter)
-    failed: list[dict[str, Any]] = field(default_factory=list)
+    failed: dict[int, Verdict] = field(default_factory=dict)
     longest: tuple[float, int] = (0.0, 0)
 
 
@@ -50,7 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one case, to be shown and made small")
     parser.add_argument("--output", type=Path, default=Path("out/fuzz/report.txt"))
-    parser.add_argument("--page", type=Path, help=f"page of a campaign of {kept.FULL} or more")
+    parser.add_argument("--page", type=Path, help=f"page of a campaign of {FULL} or more")
     parser.add_argument("--record", type=Path, help="JSON that the page is made of")
     asked = parser.parse_args(arguments)
     if (asked.page is None) != (asked.record is None):
@@ -65,20 +69,24 @@ def main(arguments: list[str] | None = None) -> int:
     report = report_of(head, told, asked.seed, seconds)
     asked.output.parent.mkdir(parents=True, exist_ok=True)
     asked.output.write_text(report)
-    if asked.page:
-        kept.write(record_of(asked, told, seconds), asked.page, asked.record)
+    if asked.page and asked.cases >= FULL:
+        record = record_of(asked, told, seconds)
+        asked.record.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+        before, _, rest = asked.page.read_text(encoding="utf-8").partition(BEGIN)
+        shown = before + BEGIN + tables(record) + END + rest.partition(END)[2]
+        asked.page.write_text(shown, encoding="utf-8")
     print(report)
     return 1 if told.failed else 0
 
 
-def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Record:
+def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> dict[str, Any]:
     """Return what is kept of a campaign."""
     return {
         "seed": asked.seed,
         "first": asked.first,
         "cases": told.outcomes.total(),
         "failed": len(told.failed),
-        "failures": sorted(verdict["case"] for verdict in told.failed)[:100],
+        "failures": [*told.failed][:100],
         "outcomes": dict(told.outcomes.most_common()),
         "longest": dict(zip(("seconds", "case"), told.longest, strict=True)),
         "seconds": seconds,
@@ -88,18 +96,45 @@ def record_of(asked: argparse.Namespace, told: Told, seconds: float) -> kept.Rec
     }
 
 
-def run(
-    seed: str, cases: range, workers: int = 1, worker: list[str] = WORKER,
-    patience: float = watch.HANGS_AFTER,
-) -> Told:  # fmt: skip
+def tables(record: dict[str, Any]) -> str:
+    """Return what stands between the markers of the page."""
+    words = {"refused": "refused, with the reason", "not drawn": "not drawn: no such scene can be"}
+    seconds, longest = record["longest"]["seconds"], record["longest"]["case"]
+    facts = {
+        "seed": f"`{record['seed']}`",
+        "cases": f"{record['cases']:,}",
+        "failed": f"{record['failed']:,}",
+        "crashed or hung": f"{sum(record['outcomes'].get(x, 0) for x in ('crash', 'hang')):,}",
+        "longest case": f"{seconds:.1f} s (number {longest})",
+        "in all": f"{record['seconds']:,.0f} s, {record['workers']} processes",
+        "pendcore": record["pendcore"],
+        "date": record["date"],
+    }
+    lines = ["| | |", "|---|---|", *(f"| {name} | {fact} |" for name, fact in facts.items())]
+    lines += ["", "| outcome | cases |", "|---|--:|"]
+    cases: Counter[str] = Counter()
+    for outcome, count in record["outcomes"].items():  # the reason stands after a colon
+        cases[outcome.partition(":")[0]] += count
+    kinds = Counter(outcome.partition(":")[0] for outcome in record["outcomes"])
+    for name, count in cases.most_common():
+        text = words.get(name, f"`{name}`" if " " not in name else name)
+        of_kinds = f" ({kinds[name]} kinds)" if kinds[name] > 1 else ""
+        lines.append(f"| {text}{of_kinds} | {count:,} |")
+    if record["failed"]:
+        lines += ["", f"Failed: cases {', '.join(map(str, record['failures']))}."]
+    return "\n".join(lines) + "\n"
+
+
+def run(seed: str, cases: range, workers: int = 1) -> Told:
     """Return what became of the cases."""
     found = Told()
-    told = watch.run([*worker, seed], cases, workers, patience)
-    for verdict in tqdm(told, total=len(cases), unit="case", disable=None):
-        found.outcomes[verdict["outcome"]] += 1
-        found.longest = max(found.longest, (verdict["seconds"], verdict["case"]))
-        if verdict["breaches"]:
-            found.failed.append(verdict)
+    verdicts = watch.run(partial(of_number, campaign=seed), cases, workers)
+    told = tqdm(verdicts, total=len(cases), unit="case", disable=None)
+    for case, verdict in zip(cases, told, strict=True):
+        found.outcomes[verdict.outcome] += 1
+        found.longest = max(found.longest, (verdict.seconds, case))
+        if verdict.breaches:
+            found.failed[case] = verdict
     return found
 
 
@@ -107,14 +142,13 @@ def report_of(head: str, told: Told, seed: str, seconds: float) -> str:
     """Return what became of all, and the first failures of each kind made small."""
     lines = [f"{head}: {len(told.failed)} failed, {seconds:.0f} s", ""]
     lines += [f"{count:8d}  {outcome}" for outcome, count in told.outcomes.most_common()]
-    kinds: dict[str, list[dict[str, Any]]] = {}
-    for verdict in sorted(told.failed, key=lambda verdict: verdict["case"]):
-        for one in {kind(breach) for breach in verdict["breaches"]}:
-            kinds.setdefault(one, []).append(verdict)
-    for one, verdicts in kinds.items():
-        numbers = ", ".join(str(verdict["case"]) for verdict in verdicts[:20])
-        lines += ["", f"==== {one}: {len(verdicts)} cases: {numbers}"]
-        lines += [report_of_case(seed, verdict["case"], one) for verdict in verdicts[:SHOWN]]
+    kinds: dict[str, list[int]] = {}
+    for case, verdict in told.failed.items():
+        for one in {kind(breach) for breach in verdict.breaches}:
+            kinds.setdefault(one, []).append(case)
+    for one, cases in kinds.items():
+        lines += ["", f"==== {one}: {len(cases)} cases: {', '.join(map(str, cases[:20]))}"]
+        lines += [report_of_case(seed, case, one) for case in cases[:SHOWN]]
     return "\n".join(lines) + "\n"
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pickle
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import pendcore as pc
@@ -107,7 +108,7 @@ def storing_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) ->
     store = choices.one_of(("end", "steps", "dense", "dense"))
     changes = {"store": store, "ledger": choices.one_of((True, False))}
     without = {k: v for k, v in drawn.options.items() if k != "t_eval"}
-    other = Drawn(drawn.scene, drawn.q0, drawn.qd0, drawn.t_span, without | changes).simulate()
+    other = replace(drawn, options=without | changes).simulate()
     if "time_limit" in (sol.status, other.status):
         return
     if "the ledger" in sol.message + other.message:
@@ -129,7 +130,7 @@ def resuming_changes_nothing(drawn: Drawn, sol: pc.Solution, choices: Choices) -
         part = drawn.simulate(max_steps=choices.integer(1, max(taken, 1)))
     else:
         middle = start + choices.real(0, 1) * (end - start)
-        part = Drawn(drawn.scene, drawn.q0, drawn.qd0, (start, middle), drawn.options).simulate()
+        part = replace(drawn, t_span=(start, middle)).simulate()
     if part.status not in ("finished", "max_steps"):
         return
     whole = part.resume(
@@ -168,12 +169,9 @@ def watching_changes_nothing(drawn: Drawn, sol: pc.Solution, _: Choices) -> Iter
     asked = drawn.options.get("events", ())
     if not asked or sol.status in ("time_limit", "callback_error", "max_turns"):
         return
-    bare = {k: v for k, v in drawn.options.items() if k not in ("events", "t_eval", "store")}
-    bare["store"] = "steps"
-    seen = drawn.options | {"store": "steps"}
-    seen.pop("t_eval", None)
-    watched = Drawn(drawn.scene, drawn.q0, drawn.qd0, drawn.t_span, seen).simulate()
-    plain = Drawn(drawn.scene, drawn.q0, drawn.qd0, drawn.t_span, bare).simulate()
+    seen = {k: v for k, v in drawn.options.items() if k != "t_eval"} | {"store": "steps"}
+    bare = {k: v for k, v in seen.items() if k != "events"}
+    watched, plain = (replace(drawn, options=options).simulate() for options in (seen, bare))
     if "time_limit" in (watched.status, plain.status):  # the machine had other things to do
         return
     shared = len(watched.t) - (watched.status == "event")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -104,8 +104,10 @@ def _array(choices: Choices, whole: np.ndarray) -> Any:
     return whole[::-1] if how == 7 else whole[np.newaxis]
 
 
-def state(choices: Choices, whole: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a state with entries changed, left out, or taken from one another."""
+def entries(
+    choices: Choices, whole: Mapping[str, Any], changed: Callable[[str, int], Any]
+) -> dict[str, Any]:
+    """Return entries with some changed, left out, or taken from one another."""
     damaged = dict(whole)
     for _ in range(choices.integer(1, 3)):
         key = choices.one_of(sorted(whole))
@@ -115,8 +117,13 @@ def state(choices: Choices, whole: Mapping[str, Any]) -> dict[str, Any]:
         elif how == 1:
             damaged[key] = whole[choices.one_of(sorted(whole))]
         else:
-            damaged[key] = value(choices, whole[key])
+            damaged[key] = changed(key, how)
     return damaged
+
+
+def state(choices: Choices, whole: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a damaged state of a pickle."""
+    return entries(choices, whole, lambda key, _: value(choices, whole[key]))
 
 
 def _json(choices: Choices, whole: Any) -> Any:
@@ -136,20 +143,14 @@ def _json(choices: Choices, whole: Any) -> Any:
 
 
 def folder(choices: Choices, whole: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Return the files of a store with some changed, left out, or taken from one another."""
-    damaged = dict(whole)
-    for _ in range(choices.integer(1, 3)):
-        name = choices.one_of(sorted(whole))
-        how = choices.integer(0, 9)
-        if how == 0:
-            damaged.pop(name, None)
-        elif how == 1:
-            damaged[name] = whole[choices.one_of(sorted(whole))]
-        elif name.endswith(".json") and how < 9:
-            damaged[name] = json.dumps(_json(choices, json.loads(whole[name]))).encode()
-        else:
-            damaged[name] = raw(choices, whole[name])
-    return damaged
+    """Return the damaged files of a store."""
+
+    def changed(name: str, how: int) -> bytes:
+        if name.endswith(".json") and how < 9:
+            return json.dumps(_json(choices, json.loads(whole[name]))).encode()
+        return raw(choices, whole[name])
+
+    return entries(choices, whole, changed)
 
 
 def archive(choices: Choices, whole: bytes) -> bytes:

@@ -1,4 +1,4 @@
-"""A random case: a scene, a start, a span, and how it is run."""
+"""A random case: a scene, a start, a span, how it is run, and the events that it looks for."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from carried import carried
 from pendcore import _core
 from pendcore.options import RUN_DEFAULTS
 
-from fuzz import drawn_events, drawn_scene
-from fuzz.choices import Choices, happens
-from fuzz.quantities import angle, regime, signed, size
+from fuzz import drawn_scene, own_functions
+from fuzz.choices import Choices, angle, happens, regime, signed, size
 
 METHODS = tuple(method["name"] for method in _core.methods())
 FIXED_STEP_METHODS = {method["name"] for method in _core.methods() if method["error_order"] == 0}
@@ -122,6 +121,32 @@ def options(choices: Choices, regime: str, span: tuple[float, float]) -> dict[st
     return given
 
 
+def events(choices: Choices, regime: str, n: int) -> list[Any]:
+    """Return some events of a chain of n links; raises ValueError for values that are none."""
+    return [_event(choices, regime, n) for _ in range(choices.one_of((1, 1, 2, 3)))]
+
+
+def _event(choices: Choices, regime: str, n: int) -> Any:
+    fx = pc.events
+    common: dict[str, Any] = {"direction": choices.one_of((0, 0, 1, -1))}
+    if happens(choices, 20):
+        common["terminal"] = choices.one_of((True, 1, 2, 5))
+    number = choices.integer(1, n)
+    kind = choices.integer(0, 9)
+    if kind <= 3:
+        turning = fx.JointAngle if kind <= 1 else fx.LinkAngle
+        every_turn = happens(choices, 30)
+        return turning(number, angle(choices, regime), every_turn=every_turn, **common)
+    if kind <= 6:
+        return fx.RateZero(**{choices.one_of(("joint", "link")): number}, **common)
+    if kind <= 8:
+        point = (signed(choices, regime), signed(choices, regime))
+        normal = (signed(choices, regime), size(choices, regime))
+        return fx.TipLine(point, normal, **common)
+    function = own_functions.Watched(choices.one_of(own_functions.WATCHED))
+    return fx.Function(function, samples=choices.integer(1, 9), **common)
+
+
 def drawn(choices: Choices) -> Drawn:
     """Return any case; raises ValueError where its parts do not agree."""
     how = regime(choices)
@@ -130,7 +155,7 @@ def drawn(choices: Choices) -> Drawn:
     q0, qd0 = start(choices, how, scene)
     asked = options(choices, how, times)
     if happens(choices, 40):
-        asked["events"] = drawn_events.events(choices, how, len(scene.links))
+        asked["events"] = events(choices, how, len(scene.links))
     if not all(abs(x) < inf for x in (*times, *q0, *qd0)):
         raise ValueError("the start is not finite")
     if any(hasattr(e, "coulomb") for e in scene.effects) and happens(choices, 95):

@@ -15,8 +15,7 @@ from pendcore._scene.effect_description import Description, Parameter
 from pendcore.effects import KINDS
 
 from fuzz import own_functions
-from fuzz.choices import Choices, happens
-from fuzz.quantities import angle, non_negative, signed, size
+from fuzz.choices import Choices, angle, happens, non_negative, signed, size
 
 KINDS_OF_NUMBERS = tuple(sorted(k for k, cls in KINDS.items() if not issubclass(cls, OwnEffect)))
 """The kinds of effects that are made of numbers."""
@@ -50,7 +49,7 @@ class SceneMaker:
         """Return an effect of a kind, or None where eight tries met values that do not agree."""
         if kind == "user":
             name = self.choices.one_of(own_functions.NAMES)
-            return own_functions.effect(name, self.n)
+            return pc.effects.User(own_functions.Forces(name, self.n))
         for _ in range(8):
             try:
                 return self.of(KINDS[kind])

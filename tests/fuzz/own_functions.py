@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pendcore as pc
 
 
 class Raised(Exception):
@@ -65,8 +64,3 @@ WATCHED = ("a sine", "a sine", "a sine", "jumps", "is zero", "raises", "is no nu
            "is no scalar")  # fmt: skip
 NAMES = ("damps", "raises", "is no number", "is infinite", "has a wrong shape", "is no array",
          "jumps")  # fmt: skip
-
-
-def effect(name: str, n: int) -> Any:
-    """Return one of these laws as an effect."""
-    return pc.effects.User(Forces(name, n))

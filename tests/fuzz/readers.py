@@ -31,11 +31,8 @@ MOST_SECONDS = 5.0
 
 def whole_cases() -> list[str]:
     """Return the case files that damage begins with: the project's examples, and hard cases."""
-    paths = sorted([*EXAMPLES.rglob("*.toml")])
-    return [
-        *(path.read_text() for path in paths),
-        *(solution.case().to_toml() for solution in _hard_solutions()),
-    ]
+    examples = [path.read_text() for path in sorted(EXAMPLES.rglob("*.toml"))]
+    return [*examples, *(solution.case().to_toml() for solution in _hard_solutions())]
 
 
 @cache
@@ -49,30 +46,24 @@ def whole_solutions() -> list[pc.Solution]:
         fx.DrivenPivot(spline=fx.Spline([-1.0, 0.0, 2.0], [0.0, 0.1, 0.0], [0.1, 0.0, 0.1])),
         fx.Motor(2, pd=fx.PD(3.0, 0.1, 0.5), limit=0.5),
     ]
-    plain = pc.Scene(links=[rod, rod])
-    moved = pc.Scene(links=[rod, rod, rod], effects=driven)
-    locked = pc.Scene(links=[rod, rod], effects=[fx.Lock(2), fx.RodDrag(1, 1.0, 0.1)])
-    return [
-        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0.2)),
-        pc.simulate(
-            plain, q0=[0.3, 1.0], t_span=(0.2, 0), store="steps", max_steps=5, on_failure="ignore"
-        ),
-        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0.2), t_eval=[0.0, 0.1, 0.2], ledger=True),
-        pc.simulate(moved, q0=[0.3, 1.0, 0.5], qd0=[0, 1.0, 0], t_span=(0, 0.4), ledger=True),
-        pc.simulate(
-            moved,
-            q0=[0.3, 1.0, 0.5],
-            qd0=[0, 1.0, 0],
-            t_span=(0, 1.0),
-            max_steps=9,
-            on_failure="ignore",
-        ),
-        pc.simulate(
-            locked, q0=[0.3, 1.0], qd0=[1.0, 1.0], t_span=(0, 0.3), rtol=[1e-6] * 4, max_step=0.01
-        ),
-        pc.simulate(plain, q0=[0.3, 1.0], t_span=(0, 0)),
-        *_hard_solutions(),
+    plain = pc.Scene(links=[rod, rod]), [0.3, 1.0], [0.0, 0.0]
+    moved = pc.Scene(links=[rod, rod, rod], effects=driven), [0.3, 1.0, 0.5], [0.0, 1.0, 0.0]
+    held = [fx.Lock(2), fx.RodDrag(1, 1.0, 0.1)]
+    locked = pc.Scene(links=[rod, rod], effects=held), [0.3, 1.0], [1.0, 1.0]
+    runs: list[tuple[Any, tuple[float, float], dict[str, Any]]] = [
+        (plain, (0, 0.2), {}),
+        (plain, (0.2, 0), {"store": "steps", "max_steps": 5}),
+        (plain, (0, 0.2), {"t_eval": [0.0, 0.1, 0.2], "ledger": True}),
+        (moved, (0, 0.4), {"ledger": True}),
+        (moved, (0, 1.0), {"max_steps": 9}),
+        (locked, (0, 0.3), {"rtol": [1e-6] * 4, "max_step": 0.01}),
+        (plain, (0, 0), {}),
     ]
+    found = [
+        pc.simulate(scene, span, q0, qd0, on_failure="ignore", **how)
+        for (scene, q0, qd0), span, how in runs
+    ]
+    return [*found, *_hard_solutions()]
 
 
 @cache

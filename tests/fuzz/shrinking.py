@@ -5,16 +5,15 @@ Every try runs in a process of its own, so that a crash or a hang can be made sm
 
 from __future__ import annotations
 
-import json
-import os
-import select
-import signal
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
+from itertools import islice
 
 import pendcore as pc
 
+from fuzz import watch
 from fuzz.drawn_run import Drawn
 from fuzz.verdict import of_case
 
@@ -26,25 +25,10 @@ def kind(breach: str) -> str:
     return breach.split(":")[0].split(" in ")[0]
 
 
-def breaches_alone(case: Drawn, seed: str, patience: float = PATIENCE) -> list[str]:
+def breaches_alone(case: Drawn, seed: str) -> list[str]:
     """Judge a case in a process of its own."""
-    reads, writes = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.close(reads)
-        found = [breach[:600] for breach in of_case(case, seed).breaches]
-        os.write(writes, json.dumps(found[:50]).encode())
-        os._exit(0)
-    os.close(writes)
-    ready, _, _ = select.select([reads], [], [], patience)
-    told = os.read(reads, 1 << 16) if ready else b""
-    os.close(reads)
-    if not ready:
-        os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    if not ready:
-        return ["hang: "]
-    return json.loads(told) if told else ["crash: "]
+    (verdict,) = watch.run(partial(of_case, seed=seed), [case], patience=PATIENCE)
+    return verdict.breaches
 
 
 def smaller(case: Drawn) -> Iterator[Drawn]:
@@ -91,15 +75,16 @@ def _scenes(scene: pc.Scene) -> Iterator[Callable[[], pc.Scene]]:
 
 def shrunk(case: Drawn, seed: str, breach: str, tries: int = 200) -> Drawn:
     """Return the smallest case found that breaks the same claim."""
-    wanted = kind(breach)
-    shrinks = True
-    while shrinks:
-        shrinks = False
-        for candidate in smaller(case):
+    while candidates := list(islice(smaller(case), tries)):
+        for verdict, candidate in zip(
+            watch.run(partial(of_case, seed=seed), candidates, patience=PATIENCE),
+            candidates,
+            strict=False,
+        ):
             tries -= 1
-            if tries < 0:
-                return case
-            if any(kind(found) == wanted for found in breaches_alone(candidate, seed)):
-                case, shrinks = candidate, True
+            if any(kind(found) == kind(breach) for found in verdict.breaches):
+                case = candidate
                 break
+        else:
+            break
     return case

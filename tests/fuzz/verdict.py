@@ -26,13 +26,18 @@ class Verdict:
     seconds: float = 0.0
 
 
-def of_seed(seed: str) -> tuple[Drawn | None, Verdict]:
-    """Draw the case of a seed, and judge it."""
+def seed_of(campaign: str, case: int) -> str:
+    """Return the seed of a case of a campaign."""
+    return f"{campaign}/{case}"
+
+
+def of_number(case: int, campaign: str) -> Verdict:
+    """Draw a case of a campaign, and judge it."""
+    seed = seed_of(campaign, case)
     try:
-        case = drawn(FromSeed(seed))
+        return of_case(drawn(FromSeed(seed)), seed)
     except ValueError as refusal:
-        return None, Verdict(outcome_of_refusal("not drawn", refusal))
-    return case, of_case(case, seed)
+        return Verdict(outcome_of_refusal("not drawn", refusal))
 
 
 def of_case(case: Drawn, seed: str) -> Verdict:

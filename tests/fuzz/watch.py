@@ -1,109 +1,92 @@
-"""Workers that are watched: one that dies or hangs names its case, and another goes on after it."""
+"""Processes that are watched: one that dies or hangs names its case; another goes on after it."""
 
 from __future__ import annotations
 
-import json
+import faulthandler
+import multiprocessing
 import os
-import selectors
-import subprocess
-import tempfile
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import IO, Any
+from queue import SimpleQueue
+from tempfile import TemporaryDirectory
+from typing import TypeVar
+
+from fuzz.verdict import Verdict
 
 HANGS_AFTER = 60.0
-"""s without a sign of life: twelve time limits."""
+"""s without an answer: twelve time limits."""
+FORKS = multiprocessing.get_context("forkserver")
+FORKS.set_forkserver_preload(["fuzz.verdict"])  # so that a process is there at once
+
+Case = TypeVar("Case")
+Judge = Callable[[Case], Verdict]
+
+
+def work(judge: Judge[Case], pipe: Connection, errors: str) -> None:
+    """Judge the cases that come through a pipe; what the process says before it dies is kept."""
+    with Path(errors).open("wb") as file:
+        os.dup2(file.fileno(), 2)
+    faulthandler.enable()
+    pipe.send("ready")
+    while True:
+        pipe.send(judge(pipe.recv()))
 
 
 class Worker:
-    """A process that runs every stride-th case from `first` to `end`."""
+    """A process that judges one case after the other."""
 
-    def __init__(self, command: list[str], first: int, end: int, stride: int) -> None:
-        self.command = command
-        self.next = first
-        self.end = end
-        self.stride = stride
-        self.process: subprocess.Popen[bytes]
-        self.errors: IO[bytes]
-        self._start()
+    def __init__(self, judge: Judge[Case]) -> None:
+        self.folder = TemporaryDirectory()
+        self.errors = Path(self.folder.name, "errors")
+        self.pipe, theirs = FORKS.Pipe()
+        self.process = FORKS.Process(target=work, args=(judge, theirs, str(self.errors)))
+        self.process.start()
+        theirs.close()
+        self.pipe.recv()
 
-    def _start(self) -> None:
-        self.errors = tempfile.TemporaryFile()  # noqa: SIM115  (closed by _ended)
-        numbers = [str(x) for x in (self.next, self.end, self.stride)]
-        tests = Path(__file__).parents[1]
-        paths = [str(tests), str(tests / "models"), os.environ.get("PYTHONPATH", "")]
-        self.process = subprocess.Popen(
-            [*self.command, *numbers],
-            stdout=subprocess.PIPE,
-            stderr=self.errors,
-            env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, paths))},
-        )
-        self.heard = time.monotonic()
-        self.rest = b""
+    def judged(self, case: Case, patience: float) -> Verdict:
+        """Return the verdict; after a crash or a hang the process is no more."""
+        self.pipe.send(case)
+        how = "hang"
+        if self.pipe.poll(patience):
+            try:
+                found: Verdict = self.pipe.recv()
+            except EOFError:
+                how = "crash"
+            else:
+                return found
+        tail = self.end()
+        return Verdict(how, [f"{how}: the worker ended with {self.process.exitcode}: {tail}"])
 
-    def hear(self) -> list[dict[str, Any]]:
-        """Return what it has told; a death is told in its place."""
-        assert self.process.stdout is not None
-        data = os.read(self.process.stdout.fileno(), 1 << 16)
-        self.heard = time.monotonic()
-        if not data:
-            return self._ended("crash")
-        *lines, self.rest = (self.rest + data).split(b"\n")
-        found = [json.loads(line) for line in lines]
-        for told in found:
-            if "begins" in told:
-                self.next = told["begins"]
-        done = [told for told in found if "case" in told]
-        if done and done[-1]["case"] == self.next:
-            self.next += self.stride
-        return done
-
-    def hang(self) -> list[dict[str, Any]]:
-        """End a process that has been silent for too long."""
+    def end(self) -> str:
+        """End the process, and return the last that it said of errors."""
         self.process.kill()
-        return self._ended("hang")
-
-    def _ended(self, how: str) -> list[dict[str, Any]]:
-        code = self.process.wait()
-        assert self.process.stdout is not None
-        self.process.stdout.close()
-        self.errors.seek(0)
-        tail = self.errors.read().decode(errors="replace").strip()[-2000:]
-        self.errors.close()
-        if self.next >= self.end and code == 0:
-            return []
-        case, self.next = self.next, self.next + self.stride
-        if self.next < self.end:
-            self._start()
-        told = f"{how}: the worker ended with {code}: {tail}"
-        return [{"case": case, "outcome": how, "breaches": [told], "seconds": 0.0}]
-
-    @property
-    def is_done(self) -> bool:
-        return self.process.returncode is not None
+        self.process.join()
+        self.pipe.close()
+        tail = self.errors.read_bytes().decode(errors="replace").strip()[-2000:]
+        self.folder.cleanup()
+        return tail
 
 
 def run(
-    command: list[str], cases: range, workers: int, patience: float
-) -> Iterator[dict[str, Any]]:
-    """Yield what becomes of every case, in the order in which they end."""
-    first, end = cases.start, cases.stop
-    team = [Worker(command, first + k, end, workers) for k in range(min(workers, len(cases)))]
+    judge: Judge[Case], cases: Iterable[Case], workers: int = 1, patience: float = HANGS_AFTER
+) -> Iterator[Verdict]:
+    """Yield what becomes of every case, in their order."""
+    free: SimpleQueue[Worker] = SimpleQueue()
+
+    def judged(case: Case) -> Verdict:
+        worker = free.get()
+        found = worker.judged(case, patience)
+        free.put(worker if worker.process.is_alive() else Worker(judge))
+        return found
+
+    for _ in range(workers):
+        free.put(Worker(judge))
     try:
-        while team:
-            with selectors.DefaultSelector() as selector:
-                for worker in team:
-                    assert worker.process.stdout is not None
-                    selector.register(worker.process.stdout, selectors.EVENT_READ, worker)
-                ready = [key.data for key, _ in selector.select(timeout=1.0)]
-            for worker in team:
-                if worker in ready:
-                    yield from worker.hear()
-                elif time.monotonic() - worker.heard > patience:
-                    yield from worker.hang()
-            team = [worker for worker in team if not worker.is_done]
+        with ThreadPoolExecutor(workers) as threads:
+            yield from threads.map(judged, cases)
     finally:
-        for worker in team:
-            worker.process.kill()
-            worker.process.wait()
+        while not free.empty():
+            free.get().end()

@@ -9,8 +9,7 @@ import pendcore as pc
 import pytest
 from pendcore import _core
 from pendcore.methods import known_methods, most_accurate
-from reference.order_conditions import StageWeights, misses, order_of, trees
-from reference.quadratic_field import Quadratic
+from reference.order_conditions import Quadratic, StageWeights, misses, order_of, trees
 from reference.trajectories import trajectory
 
 METHODS = {method["name"]: method for method in _core.methods()}

@@ -10,22 +10,14 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from reference import chain, radau_steps
+from reference.chain import simulate_implicitly
 from reference.trajectories import Trajectory, trajectory
 
 
 def solve(case, t_end, **options):
-    links = [pc.Link(mass=body.mass, length=body.length) for body in case.bodies]
-    dampers = [pc.effects.ViscousJoint(j, b) for j, b in enumerate(case.damping, start=1) if b]
-    scene = pc.Scene(links=links, gravity=case.gravity, effects=dampers)
-    sol = pc.simulate(scene, (0.0, t_end), case.q0, case.qd0, method="radau5", **options)
+    sol = pc.simulate(case.scene, (0.0, t_end), case.q0, case.qd0, method="radau5", **options)
     assert sol.success
     return sol
-
-
-def written_out(case, t_end, **options) -> radau_steps.Run:
-    start, options = (case.q0, case.qd0), {"damping": case.damping, **options}
-    return chain.simulate_implicitly(case.bodies, case.gravity, *start, (0.0, t_end), **options)
 
 
 def rods(damping, rate=0.0):
@@ -63,7 +55,7 @@ def test_runs_take_the_steps_of_the_method_written_out_in_python(name):
     for tolerance in tolerances:
         how = {"rtol": tolerance, "atol": tolerance}
         how |= {"first_step": first_step} if first_step else {}
-        sol, run = solve(case, t_end, **how), written_out(case, t_end, **how)
+        sol, run = solve(case, t_end, **how), simulate_implicitly(case, t_end, **how)
         assert run.not_solved > 0 or not name.startswith("fast")
         assert (sol.stats.accepted, sol.stats.rejected) == (len(run.h), run.rejected)
         # if stages are not found, one more evaluation asks whether something was not finite
@@ -78,7 +70,7 @@ def test_runs_take_the_steps_of_the_method_written_out_in_python(name):
 def test_errors_are_those_of_the_method_written_out_in_python(steps):
     """The state for resuming a run holds the last error, or 1e-4 if the error is less."""
     case, how = trajectory("textbook"), {"rtol": 1e-4, "atol": 1e-4}
-    run = written_out(case, 2.0, **how)
+    run = simulate_implicitly(case, 2.0, **how)
     # one step more is begun, and cut: what is kept is from before it
     sol = solve(case, 0.5 * (run.t[steps] + run.t[steps + 1]), **how)
     found = 2.0 ** sol._run.__getstate__()["position_log2_error_before"]

@@ -79,9 +79,7 @@ def growth_of_small_changes(scene, case):
 @pytest.mark.parametrize("name", CASES)
 def test_the_references_are_met_to_what_their_conditioning_allows(name):
     case = trajectory(name)
-    damping = [fx.ViscousJoint(j, b) for j, b in enumerate(case.damping, 1) if b]
-    links = [pc.Link(mass=m, length=x) for m, x in zip(case.masses, case.lengths, strict=True)]
-    scene = pc.Scene(links=links, gravity=case.gravity, effects=damping)
+    scene = case.scene
     run = pc.simulate(scene, (0, case.t[-1]), case.q0, case.qd0, t_eval=case.t, **FINEST)
     assert run.success
     exact = np.hstack([case.q, case.qd]).T

@@ -81,7 +81,7 @@ class CornerCase:
         for precision in digits:
             rods = self.rods(precision)
             answers.append([row[:n] for row in rods.run(self.q0, self.qd0, TIMES)])
-            impacts = sum(event.what == "strikes" for event in rods.events)
+            impacts = rods.impacts
         apart = float(np.abs(np.array(answers[-1]) - np.array(answers[0])).max())
         made = {**asdict(self), "q": answers[-1], "disagreement": apart, "impacts": impacts}
         return CornerCase(**made)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import time
+from types import SimpleNamespace
+
+import numpy as np
+import pendcore as pc
 import pytest
-from fuzz import campaign
+from fuzz import campaign, claims, watch
 from fuzz.choices import FromSeed
-from fuzz.drawn_run import TIME_LIMIT
-from fuzz.readers import (
-    READERS,
-    finding,
-    read_archive,
-    read_case,
-    whole_archives,
-    whole_cases,
-)
+from fuzz.drawn_run import TIME_LIMIT, Drawn
+from fuzz.readers import READERS, finding, read_archive, read_case, whole_archives, whole_cases
+from fuzz.verdict import Verdict
 
 CASES = 400
 SEED = "ci"
@@ -25,6 +25,32 @@ def test_random_cases_end_in_time_and_keep_every_claim():
     assert told.outcomes.total() == CASES
     assert not told.failed, campaign.report_of("", told, SEED, 0)
     assert 0 < told.longest[0] < 4 * TIME_LIMIT
+
+
+def deliberate(case: str) -> Verdict:
+    if case == "crash":
+        os.abort()
+    if case == "hang":
+        time.sleep(600)
+    return Verdict(case)
+
+
+@pytest.mark.unsanitized
+def test_a_crash_and_a_hang_are_told_and_the_next_case_is_judged():
+    cases = ["crash", "fine", "hang", "fine"]
+    found = list(watch.run(deliberate, cases, patience=3.0))
+    assert [verdict.outcome for verdict in found] == cases
+    assert [len(verdict.breaches) for verdict in found] == [1, 0, 1, 0]
+    assert "Fatal Python error: Aborted" in found[0].breaches[0]
+
+
+def test_a_nan_breaks_a_claim():
+    case = Drawn(pc.Scene.textbook(), [0.3, 1.0], [0.0, 0.0], (0.0, 1.0))
+    sol = case.simulate()
+    assert list(claims.is_finite(case, sol, FromSeed(""))) == []
+    bad = SimpleNamespace(t=sol.t, y=np.nan * sol.y, _run=sol._run, status="finished")
+    (breach,) = claims.is_finite(case, bad, FromSeed(""))
+    assert breach == "y is not finite, status 'finished'"
 
 
 @pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")

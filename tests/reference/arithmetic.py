@@ -38,7 +38,7 @@ COMPLEX = Arithmetic(
 """Doubles with an imaginary part: f(x + i e) has e f'(x) for its own, without a difference."""
 
 
-def _eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
+def eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
     """Gaussian elimination with row pivoting, which passes over the many zeros."""
     rows = [[*row, side] for row, side in zip(matrix, right, strict=True)]
     n = len(rows)
@@ -64,5 +64,5 @@ def multiple_precision(digits: int) -> Arithmetic:
     context.dps = digits
 
     return Arithmetic(
-        number=context.mpf, sin=context.sin, cos=context.cos, exp=context.exp, solve=_eliminate
+        number=context.mpf, sin=context.sin, cos=context.cos, exp=context.exp, solve=eliminate
     )

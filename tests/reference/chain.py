@@ -1,74 +1,49 @@
-"""A chain and the method together: what `pendcore.simulate` does, in the reference."""
+"""A chain and a method together: what `pendcore.simulate` does, in the reference."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from reference import radau_steps
+from reference import dormand_prince, radau_steps
 from reference.arithmetic import COMPLEX, DOUBLE, Arithmetic
-from reference.dormand_prince import Array, Run, integrate
-from reference.newton_euler import Body, newton_euler
+from reference.dormand_prince import Array
+from reference.newton_euler import newton_euler
+from reference.trajectories import Trajectory
 
 
 def right_hand_side(
-    bodies: Sequence[Body],
-    gravity: float,
-    damping: Sequence[float] | Array | None,
-    arithmetic: Arithmetic = DOUBLE,
+    case: Trajectory, arithmetic: Arithmetic = DOUBLE
 ) -> Callable[[float, Any], Any]:
-    """Return dy/dt of the state q_1..q_n, qd_1..qd_n; ``damping`` resists at each joint."""
-    n = len(bodies)
-    b = np.zeros(n) if damping is None else np.asarray(damping)
+    """Return dy/dt of the state q_1..q_n, qd_1..qd_n."""
+    bodies, n = case.bodies, len(case.masses)
 
     def rates(_: float, y: Any) -> Any:
-        qd = y[n:]
-        couples = -b * np.diff(qd, prepend=0.0)
+        q, qd = y[:n].tolist(), y[n:]
+        couples = (-case.damping * np.diff(qd, prepend=0.0)).tolist()
         motion = newton_euler(
-            bodies, gravity, y[:n].tolist(), qd.tolist(),
-            couples=couples.tolist(), arithmetic=arithmetic,
-        )  # fmt: skip
+            bodies, case.gravity, q, qd.tolist(), couples=couples, arithmetic=arithmetic
+        )
         return np.concatenate([qd, motion.accelerations])
 
     return rates
 
 
-def simulate(
-    bodies: Sequence[Body],
-    gravity: float,
-    q0: Sequence[float] | Array,
-    qd0: Sequence[float] | Array,
-    t_span: tuple[float, float],
-    *,
-    rtol: float,
-    atol: float,
-    damping: Sequence[float] | Array | None = None,
-    first_step: float | None = None,
-) -> Run:
-    """Integrate a chain with dopri5."""
-    f = right_hand_side(bodies, gravity, damping)
-    y0 = np.concatenate([q0, qd0])
-    return integrate(f, y0, t_span, rtol=rtol, atol=atol, first_step=first_step)
+def simulate(case: Trajectory, t_end: float, **options: Any) -> dormand_prince.Run:
+    """Integrate a chain with dopri5, from its start at time 0."""
+    y0 = np.concatenate([case.q0, case.qd0])
+    return dormand_prince.integrate(right_hand_side(case), y0, (0.0, t_end), **options)
 
 
-def simulate_implicitly(
-    bodies: Sequence[Body],
-    gravity: float,
-    q0: Sequence[float] | Array,
-    qd0: Sequence[float] | Array,
-    t_span: tuple[float, float],
-    *,
-    damping: Sequence[float] | Array | None = None,
-    **options: Any,
-) -> radau_steps.Run:
+def simulate_implicitly(case: Trajectory, t_end: float, **options: Any) -> radau_steps.Run:
     """Integrate a chain with radau5, whose Jacobian is exact but for rounding."""
-    f = right_hand_side(bodies, gravity, damping)
-    complex_f = right_hand_side(bodies, gravity, damping, COMPLEX)
+    complex_f = right_hand_side(case, COMPLEX)
 
     def jacobian(t: float, y: Array) -> Array:
         columns = [complex_f(t, y + 1e-30j * unit).imag / 1e-30 for unit in np.eye(len(y))]
         return np.array(columns).T
 
-    return radau_steps.integrate(f, jacobian, np.concatenate([q0, qd0]), t_span, **options)
+    y0 = np.concatenate([case.q0, case.qd0])
+    return radau_steps.integrate(right_hand_side(case), jacobian, y0, (0.0, t_end), **options)

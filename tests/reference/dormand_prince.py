@@ -116,30 +116,11 @@ def integrate(
     atol: float,
     first_step: float | None = None,
 ) -> Run:
-    """Integrate dy/dt = f(t, y) from the first to the second time of ``t_span``.
+    """Integrate dy/dt = f(t, y) from the first to the second time of ``t_span``, either way.
 
-    Parameters
-    ----------
-    f
-        The right-hand side, a function of t and y.
-    y0
-        State at the first time, (n,).
-    t_span
-        First and last time; the last may be the smaller one.
-    rtol, atol
-        Tolerances of the error of a step, relative and absolute.
-    first_step
-        Size of the first step; chosen by `starting_step` if not given.
-
-    Returns
-    -------
-    Run
-        Accepted points, step sizes, counts; call it to evaluate between the points.
-
-    Raises
-    ------
-    StepTooSmallError
-        If the step shrinks to the rounding error of the time.
+    ``y0``, (n,), is the state at the first time; ``rtol`` and ``atol`` are tolerances of the error
+    of a step; `starting_step` chooses the first step if it is not given. If a step shrinks to the
+    rounding error of the time, that is a `StepTooSmallError`.
     """
     t, t_end = t_span
     direction = 1.0 if t_end >= t else -1.0

@@ -79,6 +79,10 @@ class Instant:
         """Return the mass centre of a link."""
         return self.point(link, self.bodies[link - 1].center)
 
+    def mass_centers(self) -> list[Place]:
+        """Return those of all links."""
+        return [self.mass_center(link) for link in range(1, len(self.bodies) + 1)]
+
     def relative(self, values: Sequence[Number], joint: int) -> Number:
         """What a joint sees of angles or rates: the difference to the link before."""
         number = self.arithmetic.number

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import mpmath
@@ -38,33 +39,19 @@ class ManyDigitContacts:
         self.matrix, self.moments = chain.inertia()
 
     def mass_matrix(self, q: Sequence[Any]) -> Any:
-        matrix, n = self.matrix, self.n
-        return mpmath.matrix(
-            [
-                [
-                    mpf(matrix[i][j].numerator) / matrix[i][j].denominator * mpmath.cos(q[i] - q[j])
-                    for j in range(n)
-                ]
-                for i in range(n)
-            ]
-        )
+        return mpmath.matrix([
+            [number(x) * mpmath.cos(a - b) for x, b in zip(row, q, strict=True)]
+            for row, a in zip(self.matrix, q, strict=True)
+        ])  # fmt: skip
 
     def forces(self, q: Sequence[Any], qd: Sequence[Any]) -> Any:
-        matrix = self.matrix
-        weight = [mpf(a.numerator) / a.denominator * self.gravity for a in self.moments]
-        return mpmath.matrix(
-            [
-                weight[i] * mpmath.cos(q[i])
-                - sum(
-                    mpf(matrix[i][j].numerator)
-                    / matrix[i][j].denominator
-                    * mpmath.sin(q[i] - q[j])
-                    * qd[j] ** 2
-                    for j in range(self.n)
-                )
-                for i in range(self.n)
-            ]
-        )
+        spun = [
+            sum(number(x) * mpmath.sin(a - b) * w**2 for x, b, w in zip(row, q, qd, strict=True))
+            for row, a in zip(self.matrix, q, strict=True)
+        ]
+        weights = [number(moment) * self.gravity for moment in self.moments]
+        turned = zip(weights, q, spun, strict=True)
+        return mpmath.matrix([weight * mpmath.cos(a) - s for weight, a, s in turned])
 
     def opening(self, stops: Sequence[int]) -> list[Any]:
         """Rows J: how fast gaps open is J qd."""
@@ -106,6 +93,10 @@ class ManyDigitContacts:
                 best = (wrong, after, chosen)
         assert best[0] < size * mpf(10) ** (-self.digits // 2)
         return [best[1][i] for i in range(self.n)], best[2]
+
+
+def number(exact: Fraction) -> Any:
+    return mpf(exact.numerator) / exact.denominator
 
 
 def subsets(items: Sequence[int]) -> Iterator[tuple[int, ...]]:

@@ -186,27 +186,11 @@ def newton_euler(
     loads: Loads | None = None,
     arithmetic: Arithmetic = DOUBLE,
 ) -> Motion:
-    """Solve the Newton-Euler equations of a chain.
+    """Solve the Newton-Euler equations of a chain, whose links go from the ground to the tip.
 
-    Parameters
-    ----------
-    bodies
-        The links, from the ground to the tip.
-    gravity
-        Acceleration of gravity towards +y, m/s^2.
-    q, qd
-        Absolute angles from +x towards +y, rad, and their rates, rad/s.
-    couples
-        Couple at each joint on the link beyond it (its opposite acts on the link before), N m.
-    loads
-        What acts besides; the couples are added to it.
-    arithmetic
-        Doubles or multiple precision.
-
-    Returns
-    -------
-    Motion
-        Angular accelerations, joint forces and mass-centre accelerations.
+    Gravity pulls towards +y, m/s^2; q are absolute angles from +x towards +y, rad, and qd their
+    rates, rad/s. There is a couple, N m, at each joint on the link beyond it, and its opposite on
+    the link before; they are added to the loads, which act besides.
     """
     n, number = len(bodies), arithmetic.number
     loads = Loads(n) if loads is None else loads

@@ -7,15 +7,63 @@ A method has order p if sum_i b_i Phi_i(t) = 1/gamma(t) for every rooted tree t 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import combinations_with_replacement
 from math import prod
 from typing import Any
 
-from reference.quadratic_field import Number
-
 Tree = tuple["Tree", ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quadratic:
+    """``rational`` + ``root`` sqrt(6), for tables that need such numbers."""
+
+    rational: Fraction
+    root: Fraction
+
+    def __add__(self, other: Number) -> Quadratic:
+        more = of(other)
+        return Quadratic(self.rational + more.rational, self.root + more.root)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Quadratic:
+        return Quadratic(-self.rational, -self.root)
+
+    def __sub__(self, other: Number) -> Quadratic:
+        return self + -of(other)
+
+    def __rsub__(self, other: Number) -> Quadratic:
+        return of(other) - self
+
+    def __mul__(self, other: Number) -> Quadratic:
+        by = of(other)
+        return Quadratic(
+            self.rational * by.rational + 6 * self.root * by.root,
+            self.rational * by.root + self.root * by.rational,
+        )
+
+    __rmul__ = __mul__
+
+    def __bool__(self) -> bool:
+        return bool(self.rational or self.root)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Quadratic | Fraction | int) and not self - other
+
+    def __hash__(self) -> int:
+        return hash((self.rational, self.root)) if self.root else hash(self.rational)
+
+
+Number = Quadratic | Fraction | int
+
+
+def of(number: Number) -> Quadratic:
+    """Return the same as a number of the field."""
+    return number if isinstance(number, Quadratic) else Quadratic(Fraction(number), Fraction(0))
 
 
 @cache
@@ -49,14 +97,9 @@ def density(tree: Tree) -> int:
 
 
 class StageWeights:
-    """Phi_i(t) of every stage i of a method, for any tree.
+    """Phi_i(t) of every stage i of a method, for any tree; those of hanging trees are found once.
 
-    The weights of trees that hang from others are found once.
-
-    Parameters
-    ----------
-    a
-        The matrix of the method; rows may be short. Its numbers only need to add and multiply.
+    ``a`` is the matrix of the method; rows may be short. Its numbers only need to add and multiply.
     """
 
     def __init__(self, a: Sequence[Sequence[Any]]) -> None:

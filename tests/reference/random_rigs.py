@@ -10,11 +10,11 @@ import ctypes
 from collections.abc import Sequence
 from typing import Any
 
+from compiled_functions import FORCES
 from hypothesis import assume
 from hypothesis import strategies as st
 
 from reference.effects import Described
-from reference.effects.compiled_user import SIGNATURE
 from reference.newton_euler import Body
 
 State = tuple[float, list[float], list[float]]
@@ -48,14 +48,11 @@ def knots(draw: st.DrawFn, count: int) -> list[float]:
     return [START - 0.25 + scale * sum(gaps[:i]) for i in range(count - 1)] + [END + 0.25]
 
 
-sinusoids = st.fixed_dictionaries(
-    {"amplitude": between(-3, 3), "angular_frequency": between(0, 9)},
-    optional={"phase": between(-3, 3)},
-)
-small_sinusoids = st.fixed_dictionaries(
-    {"amplitude": between(-0.3, 0.3), "angular_frequency": between(0, 9)},
-    optional={"phase": between(-3, 3)},
-)
+def sinusoids(size: float) -> st.SearchStrategy[dict[str, float]]:
+    return st.fixed_dictionaries(
+        {"amplitude": between(-size, size), "angular_frequency": between(0, 9)},
+        optional={"phase": between(-3, 3)},
+    )
 
 
 @st.composite
@@ -71,7 +68,7 @@ def motors(draw: st.DrawFn, joint: int) -> dict[str, Any]:
     mode = draw(st.sampled_from(["constant", "sinusoid", "table", "pd"]))
     told: dict[str, st.SearchStrategy[Any]] = {
         "constant": between(-5, 5),
-        "sinusoid": sinusoids,
+        "sinusoid": sinusoids(3),
         "table": tables("torque"),
         "pd": st.fixed_dictionaries(
             {"kp": between(0, 10), "kd": between(0, 2), "reference": between(-3, 3)}
@@ -104,14 +101,14 @@ def address_of(a: float, b: float, c: float) -> int:
         for i in range(n):
             forces[i] += a * t - b * q[i] - c * qd[i] + b * q[n - 1 - i]
 
-    COMPILED.append(SIGNATURE(write))
+    COMPILED.append(FORCES(write))
     return ctypes.cast(COMPILED[-1], ctypes.c_void_p).value or 0
 
 
 def parameters(kind: str, joint: int) -> st.SearchStrategy[dict[str, Any]]:
     """Parameters of an effect; ``joint`` is the number of its joint or link."""
     at, user = {"joint": st.just(joint)}, [between(-2, 2)] * 3
-    fixed, builds = st.fixed_dictionaries, st.builds
+    fixed, builds, small = st.fixed_dictionaries, st.builds, sinusoids(0.3)
     return {
         "viscous_joint": fixed(
             {**at, "damping": between(0, 3)},
@@ -144,9 +141,9 @@ def parameters(kind: str, joint: int) -> st.SearchStrategy[dict[str, Any]]:
         "payload": fixed({"mass": between(0, 5)}, optional={"inertia": between(0, 1)}),
         "joint_stop": fixed({**at, "range": st.tuples(between(-99, -50), between(50, 99))}),
         "lock": fixed(at, optional={"angle": between(-3, 3)}),
-        "driven_pivot": fixed({"x": small_sinusoids, "y": small_sinusoids})
-        | fixed({"x": small_sinusoids})
-        | fixed({"y": small_sinusoids})
+        "driven_pivot": fixed({"x": small, "y": small})
+        | fixed({"x": small})
+        | fixed({"y": small})
         | fixed({"spline": tables("x", "y", size=0.3)}),
         "motor": motors(joint),
         "user": builds(lambda *c: {"function": polynomial(*c)}, *user),

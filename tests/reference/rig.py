@@ -4,16 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from reference.arithmetic import DOUBLE, Arithmetic, Number
-from reference.conserved import Energy, energy_of_links
-from reference.effects.law import Law
-from reference.instant import AT_REST, Instant
+from reference.instant import AT_REST, Instant, PivotMotion
 from reference.loads import Loads
 from reference.newton_euler import Body, Equations, Motion, chain_equations, motion_of
 
 # What the ledger books as lost; the other entries are work done on the chain.
 LOSSES = {"viscous", "dry", "drag"}
+
+
+class Energy(NamedTuple):
+    """Kinetic and potential energy, J; the potential is zero at the height of the pivot."""
+
+    kinetic: Number
+    potential: Number
+
+
+@dataclass(frozen=True)
+class Law:
+    """An effect that does nothing; most laws define one of its parts (`reference.effects`)."""
+
+    def pivot(self, t: Number, arithmetic: Arithmetic) -> PivotMotion | None:
+        """How the pivot moves, if the effect moves it."""
+        return None
+
+    def act(self, instant: Instant, loads: Loads) -> None:
+        """Add forces and couples, inertia, constraints."""
+
+    def kinetic(self, instant: Instant) -> Number:
+        """Kinetic energy besides that of the links, J."""
+        return 0
+
+    def potential(self, instant: Instant) -> Number:
+        """Potential energy besides that of the links, J."""
+        return 0
+
+    def shares(self, instant: Instant, motion: Motion) -> dict[str, Number]:
+        """Power of each entry of the ledger, W; losses count as positive."""
+        return {}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,13 +90,25 @@ class Rig:
         return motion_of(unknowns, self.bodies, q, qd, self.loads(instant), self.arithmetic)
 
     def energy(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Energy:
-        """Energy of the links and of what the effects store."""
-        instant = self.instant(t, q, qd)
-        kinetic, potential = energy_of_links(instant)
+        """Sum m v^2/2 + I w^2/2 and -m g y over the links, and what the effects store."""
+        instant, number = self.instant(t, q, qd), self.arithmetic.number
+        kinetic = potential = number(0)
+        for body, rate, center in zip(self.bodies, qd, instant.mass_centers(), strict=True):
+            mass, w = number(body.mass), number(rate)
+            kinetic += mass * (center.vx**2 + center.vy**2) / 2 + number(body.inertia) * w * w / 2
+            potential -= mass * number(self.gravity) * center.y
         for effect in self.effects:
             kinetic += effect.kinetic(instant)
             potential += effect.potential(instant)
         return Energy(kinetic, potential)
+
+    def angular_momentum(self, q: Sequence[Number], qd: Sequence[Number]) -> Number:
+        """Sum m (x vy - y vx) + I w over the links: about the pivot, from x towards y."""
+        number = self.arithmetic.number
+        total, centers = number(0), self.instant(0, q, qd).mass_centers()
+        for body, rate, (x, y, vx, vy) in zip(self.bodies, qd, centers, strict=True):
+            total += number(body.mass) * (x * vy - y * vx) + number(body.inertia) * number(rate)
+        return total
 
     def shares(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> dict[str, Number]:
         """Power of every entry of the ledger, W; losses count as positive."""

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import mpmath
 
@@ -22,26 +22,17 @@ from reference.polynomial_roots import first_root
 from reference.taylor_series import SPARE, RodChain, Series, horner, step_share
 
 mpf = mpmath.mpf
-
-
-class Event(NamedTuple):
-    """What happened at a time: the stops that took part in an impact, or that let go."""
-
-    t: float
-    what: str
-    stops: tuple[int, ...]
-    speed: float
+MOST_IMPACTS = 100_000
 
 
 @dataclass(kw_only=True)
 class StoppedRods:
-    """A run of such rods, from a start that touches no stop; `events` gets what happens."""
+    """A run of such rods, from a start that touches no stop."""
 
     chain: RodChain
     stops: Sequence[Stop]
     digits: int = 60
-    most_events: int = 100_000
-    events: list[Event] = field(default_factory=list)
+    impacts: int = 0
 
     def __post_init__(self) -> None:
         self.bits = int(self.digits * 3.33) + SPARE
@@ -77,7 +68,7 @@ class StoppedRods:
                 if order == self.order:
                     halvings = max(halvings + (1 if share < 0.6 else -1 if share > 1.0 else 0), 0)
                 if which is not None:  # the next may be so near that a shorter series reaches it
-                    self.happen(which, now, q, qd)
+                    self.happen(which, q, qd)
                     near = x < int(share * 2**30) << self.bits - 40
                     order = max(8, order // 2) if near else order
                 else:
@@ -119,22 +110,18 @@ class StoppedRods:
 
     # Impacts ------------------------------------------------------------------------------------
 
-    def happen(self, which: int, now: int, q: list[int], qd: list[int]) -> None:
-        assert len(self.events) < self.most_events
+    def happen(self, which: int, q: list[int], qd: list[int]) -> None:
+        assert self.impacts < MOST_IMPACTS
         with mpmath.workprec(self.bits):
             angles = [mpmath.ldexp(mpf(v), -self.bits) for v in q]
             rates = [mpmath.ldexp(mpf(v), -self.bits) for v in qd]
-            t = float(mpmath.ldexp(mpf(now), -self.bits))
             near = self.near(which, angles)
             for s in near:  # in turn, the accelerations without a say
                 self.put(s, q, angles)
             at = sorted(self.held | {which} | near)
             lets_go = which in self.held
-            if lets_go:
-                self.events.append(Event(t, "lets go", (which,), 0.0))
-            else:
-                closing = self.stops[which].side * relative(rates, self.stops[which])
-                self.events.append(Event(t, "strikes", tuple(at), float(closing)))
+            if not lets_go:
+                self.impacts += 1
                 rates = self.after_impact(at, angles, rates)
             resting = [s for s in at if not (lets_go and s == which)]
             self.held = self.holding(resting, angles, rates)

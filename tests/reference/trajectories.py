@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pendcore as pc
 from numpy.typing import NDArray
 
 from reference.newton_euler import Body, uniform_rod
@@ -37,6 +38,13 @@ class Trajectory:
         """The links as the reference takes them."""
         return [uniform_rod(m, length) for m, length in zip(self.masses, self.lengths, strict=True)]
 
+    @property
+    def scene(self) -> pc.Scene:
+        """The same for the core."""
+        links = [pc.Link(mass=body.mass, length=body.length) for body in self.bodies]
+        dampers = [pc.effects.ViscousJoint(j, b) for j, b in enumerate(self.damping, 1) if b]
+        return pc.Scene(links=links, gravity=self.gravity, effects=dampers)
+
 
 @cache
 def _cases() -> dict[str, dict[str, Any]]:
@@ -52,14 +60,9 @@ def names() -> list[str]:
 def trajectory(name: str) -> Trajectory:
     """Read the case of that name."""
     case = _cases()[name]
-    return Trajectory(
-        masses=np.array(case["masses"]),
-        lengths=np.array(case["lengths"]),
-        gravity=case["g"],
-        damping=np.array(case["viscous_joint"] or [0.0] * len(case["masses"])),
-        q0=np.array(case["q0"]),
-        qd0=np.array(case["qd0"]),
-        t=np.array(case["t"]),
-        q=np.array(case["q"], dtype=np.float64),
-        qd=np.array(case["qd"], dtype=np.float64),
-    )
+    arrays = {
+        of: np.array(case[of], dtype=np.float64)
+        for of in ("masses", "lengths", "q0", "qd0", "t", "q", "qd")
+    }
+    damping = np.array(case["viscous_joint"] or [0.0] * len(case["masses"]))
+    return Trajectory(gravity=case["g"], damping=damping, **arrays)

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import heyoka as hy
 import numpy as np
 import numpy.typing as npt
 
-from true_error.arrays import Longs
+Floats: TypeAlias = npt.NDArray[np.float64]
+Longs: TypeAlias = npt.NDArray[np.longdouble]
+"""What references hand out."""
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from tqdm import tqdm
 
 from true_error.families import FAMILIES
 from true_error.judge import SECONDS, Verdict, judged
-from true_error.report import broken, markdown, offenders, record_of, table
+from true_error.report import broken, markdown, offenders, record_of
 
 BEGIN, END = "<!-- true error: begin -->\n", "<!-- true error: end -->"
 
@@ -58,13 +58,20 @@ def main(arguments: list[str] | None = None) -> int:
         "families": {name: record_of(of_it) for name, of_it in found.items()},
     }
     print(offenders(found))
-    print(table(record))
-    for path, content in ((asked.output, _by_scene(found)), (asked.record, record)):
+    print(markdown(record))
+    scenes = [
+        verdict.record()
+        for of_it in found.values()
+        for verdict in sorted(of_it, key=lambda verdict: verdict.seed)
+    ]
+    for path, content in ((asked.output, scenes), (asked.record, record)):
         if path:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(json.dumps(content, indent=1) + "\n")
     if asked.page:
-        _write_page(asked.page, markdown(record))
+        before, _, rest = asked.page.read_text().partition(BEGIN)
+        shown = before + BEGIN + markdown(record) + END + rest.partition(END)[2]
+        asked.page.write_text(shown)
     failures = [f"{name}: {claim}" for name, of_it in found.items() for claim in broken(of_it)]
     print(*failures, sep="\n")
     return 1 if failures else 0
@@ -93,16 +100,6 @@ def of_case(case: tuple[str, int, float]) -> Verdict:
     """Return what became of the scene of a family's seed."""
     family, seed, seconds = case
     return judged(FAMILIES[family](seed), seconds=seconds)
-
-
-def _write_page(page: Path, shown: str) -> None:
-    before, _, rest = page.read_text().partition(BEGIN)
-    page.write_text(before + BEGIN + shown + END + rest.partition(END)[2])
-
-
-def _by_scene(found: dict[str, list[Verdict]]) -> list[dict[str, Any]]:
-    ordered = (sorted(of_it, key=lambda verdict: verdict.seed) for of_it in found.values())
-    return [verdict.record() for of_it in ordered for verdict in of_it]
 
 
 if __name__ == "__main__":

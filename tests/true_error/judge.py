@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 
-from true_error.curve import angles_apart, angles_of, positions_apart, times_of
-from true_error.dice import Dice
-from true_error.drawn import Drawn
+from true_error import reference as ref
+from true_error.asked import Drawn
+from true_error.drawing import Dice
 from true_error.reference import Reference, Truth
 from true_error.trajectory import NoReferenceError
 
@@ -32,101 +32,71 @@ Simulate = Callable[..., pc.Solution]
 
 @dataclass
 class Verdict:
-    """The verdict on a scene.
-
-    Attributes
-    ----------
-    family, seed
-        What it was drawn from.
-    n, asked, method : int, float, str
-        The number of links, the error that was asked for, and the method that was taken.
-    outcome : str
-        ``"kept"``, ``"refused"`` (`AccuracyError`), ``"ended early"``, ``"unverified"``, or
-        ``"exception"``.
-    says : str
-        The verification, the message, or the exception.
-    achieved, true, estimated : float or None
-        What the run says it reached, the truth, and what ``sol.estimate_error()`` says of it, all
-        as shares of the total length; ``true`` is missing where the reference is not good enough.
-    unsure : float
-        The largest uncertainty of ``true``.
-    is_one_estimate : bool
-        Whether ``accuracy.until`` of a run that is kept is its end, and ``sol.estimate_error()``
-        gives the same end.
-    exception : str
-        The exception that was raised, if it is not an `AccuracyError`.
-    doubles : float or None
-        The error of an independent integrator of tight tolerance in doubles: a refusal is needed
-        where it is above what was asked.
-    limit, valid_until, first_past : float or None
-        For the run without ``error=``: the limit, rad, the time until which the run claims to keep
-        it, s, and the time before that at which the truth first passed it, s.
-    limit_known : bool
-        Whether the reference could tell.
-    work, seconds, reference_seconds : float
-        Right-hand sides of all runs; the time of the answers and of the reference, s.
-    no_reference : str
-        Why there is no reference.
-    """
+    """The verdict on a scene; errors are shares of the total length, times are in s."""
 
     family: str
     seed: int
     n: int
+    """The number of links."""
     asked: float
+    """The error that was asked for."""
     method: str = ""
     outcome: str = ""
+    """kept, refused (`AccuracyError`), ended early, unverified, or exception."""
     says: str = ""
+    """The verification, or the message."""
     achieved: float | None = None
+    """The error that the run says it reached."""
     true: float | None = None
+    """The error that it has; None where the reference is not good enough."""
     unsure: float = 0.0
+    """The largest uncertainty of `true`."""
     estimated: float | None = None
+    """The error by ``sol.estimate_error()``."""
     is_one_estimate: bool = True
+    """Whether ``accuracy.until`` of a run that is kept is its end, and the estimate's as well."""
     exception: str = ""
+    """The exception that was raised, if it is not an `AccuracyError`."""
     doubles: float | None = None
+    """The error of an independent integrator in doubles: above `asked`, a refusal is needed."""
     limit: float | None = None
+    """The limit of the run without ``error=``, rad."""
     valid_until: float | None = None
+    """The time until which that run claims to keep the limit."""
     first_past: float | None = None
+    """The time before that at which the truth first passed the limit."""
     limit_known: bool = False
+    """Whether the reference could tell."""
     work: float = 0.0
+    """Right-hand sides of all runs."""
     seconds: float = 0.0
     reference_seconds: float = 0.0
     no_reference: str = ""
-
-    @property
-    def is_above(self) -> bool:
-        """Whether the run says that the error is kept, and it is not."""
-        return self.outcome == "kept" and self.true is not None and self.true > self.asked
-
-    @property
-    def is_told_too_little(self) -> bool:
-        """Whether a run that keeps the error says that its own is smaller than it is."""
-        if self.outcome != "kept" or self.true is None or self.achieved is None:
-            return False
-        return self.true - self.unsure > self.achieved
-
-    @property
-    def is_contradicted(self) -> bool:
-        """Whether the estimate of the error contradicts ``sol.accuracy``, or ends before it."""
-        is_said_again = self.estimated in (None, self.achieved) and self.is_one_estimate
-        return self.outcome == "kept" and not is_said_again
-
-    @property
-    def is_late(self) -> bool:
-        return self.first_past is not None
-
-    @property
-    def is_unknown(self) -> bool:
-        """Whether the run says that the error is kept, and the reference cannot tell."""
-        return self.outcome == "kept" and self.true is None
+    """Why there is no reference."""
 
     @property
     def faults(self) -> list[str]:
         """Return which claims the scene breaks."""
+        is_kept = self.outcome == "kept"
+        is_said_again = self.estimated in (None, self.achieved) and self.is_one_estimate
         found = {
-            "above": self.is_above,
-            "late": self.is_late,
-            "contradicted": self.is_contradicted,
-            "exception": bool(self.exception),
+            "above": is_kept and self.true is not None and self.true > self.asked,
+            "late": self.first_past is not None,
+            "contradicted": is_kept and not is_said_again,
+            "exceptions": bool(self.exception),
+        }
+        return [name for name, is_so in found.items() if is_so]
+
+    @property
+    def rarities(self) -> list[str]:
+        """Return what is no fault of a scene, but must not happen in many."""
+        is_kept = self.outcome == "kept"
+        is_known = is_kept and self.true is not None and self.achieved is not None
+        found = {
+            "unverified": self.outcome == "unverified",
+            "told_too_little": is_known and self.true - self.unsure > self.achieved,
+            "no_reference": is_kept and self.true is None,
+            "limit_not_known": not self.limit_known,
         }
         return [name for name, is_so in found.items() if is_so]
 
@@ -214,8 +184,8 @@ def _asked_error(
             verdict.is_one_estimate = all(end == last for end in ends)
     dense = is_kept and drawn.is_dense
     with answering(verdict, seconds):
-        t = times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)
-        q = angles_of(sol, t, dense)
+        t = ref.times_of(sol, dense, Dice(drawn.family, drawn.seed).rng)
+        q = ref.angles_of(sol, t, dense)
     began = monotonic()
     try:
         _compare(drawn, verdict, t, q, reference)
@@ -243,7 +213,7 @@ def _compare(drawn: Drawn, verdict: Verdict, t: Any, q: Any, reference: Referenc
 
 def _true_error(drawn: Drawn, q: Any, truth: Truth) -> float | None:
     """Return the true error, if the reference knows that, or that it is above what was asked."""
-    apart = positions_apart(drawn.scene, q, truth.angles)
+    apart = ref.positions_apart(drawn.scene, q, truth.angles)
     if not np.isfinite(apart).all():
         return np.inf
     known = truth.unsure <= SURE * drawn.error
@@ -263,11 +233,11 @@ def _valid_until(
         verdict.limit = drawn.limit
         verdict.valid_until = sol.valid_until(drawn.limit, time_limit=seconds)
     began = monotonic()
-    t = times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
+    t = ref.times_of(sol, True, Dice(drawn.family, drawn.seed).rng)
     sign = np.sign(drawn.t_end - drawn.t_start)
     t = t[sign * t <= sign * verdict.valid_until]
     if len(t):
-        q = angles_of(sol, t, True)
+        q = ref.angles_of(sol, t, True)
         try:
             truth = reference.angles(t)
             if not _limit_known(drawn, verdict, q, t, truth):
@@ -279,7 +249,7 @@ def _valid_until(
 
 def _limit_known(drawn: Drawn, verdict: Verdict, q: Any, t: Any, truth: Truth) -> bool:
     known = truth.unsure_angle <= SURE * drawn.limit
-    past = np.flatnonzero(known & ~(angles_apart(q, truth.angles) <= drawn.limit))
+    past = np.flatnonzero(known & ~(ref.angles_apart(q, truth.angles) <= drawn.limit))
     if len(past):
         verdict.first_past = float(t[past[0]])
     verdict.limit_known = bool(known.all() or len(past))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from true_error.arrays import Floats
+from true_error.arithmetic import Floats
 
 LAWS: dict[str, Callable[..., float]] = {
     "cubic spring": lambda t, phi, w, k3: -k3 * phi**3,

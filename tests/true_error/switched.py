@@ -7,8 +7,6 @@ to. Where none does, or two do to within rounding, the reference refuses.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -16,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from true_error.arithmetic import Arithmetic
+from true_error.asked import Drawn
 from true_error.constants import Parameters, inertia, smooth_torques
-from true_error.drawn import Drawn
 from true_error.equations import System
 from true_error.switched_equations import SLOTS, SwitchedSystem, switched
 from true_error.switches import (
@@ -27,8 +25,8 @@ from true_error.switches import (
     Stop,
     smooth_own_torques,
     switches_of,
+    tables_of,
 )
-from true_error.tables import tables_of
 from true_error.trajectory import NoReferenceError, Trajectory
 
 CLEAR = 1e-9
@@ -226,20 +224,25 @@ class SwitchedTrajectory(Trajectory):
         """Find which joints at rest hold, which slide, and whether one at a stop stays there."""
         resting = [f for f in self.frictions if f is cause or not f.sign]
         contacts = [(s, side or s.held) for s in self.stops if s.held or s is cause]
+
+        def take(signs: tuple[int, ...], stays: tuple[bool, ...]) -> None:
+            for friction, sign in zip(resting, signs, strict=True):
+                friction.sign = sign
+            for (stop, at), is_held in zip(contacts, stays, strict=True):
+                stop.held = at if is_held else 0
+
         found = []
         for signs in product((0, 1, -1), repeat=len(resting)):
             for stays in product((True, False), repeat=len(contacts)):
-                with self._states(resting, signs, contacts, stays):
-                    clear = self._agreement(system, resting, contacts)
-                found.append((clear, signs, stays))
+                take(signs, stays)
+                found.append((self._agreement(system, resting, contacts), signs, stays))
         found.sort(key=lambda each: -each[0])
         if found[0][0] < CLEAR or (len(found) > 1 and found[1][0] > -CLEAR):
             raise NoReferenceError(f"whether joints hold is not clear: {found[:2]}")
         _, signs, stays = found[0]
+        take(signs, stays)
         for friction, sign in zip(resting, signs, strict=True):
             self._let_slide(friction, sign)
-        for (stop, at), is_held in zip(contacts, stays, strict=True):
-            stop.held = at if is_held else 0
 
     def _let_slide(self, friction: Friction, sign: int) -> None:
         """Let a joint at rest slide, or hold (0), at a rate that is next to nothing.
@@ -265,20 +268,6 @@ class SwitchedTrajectory(Trajectory):
             j = stop.joint - 1
             found.append(-at * (holding[j] / strongest if stop.held else wd[j] / fastest))
         return min(found)
-
-    @contextmanager
-    def _states(self, resting: Any, signs: Any, contacts: Any, stays: Any) -> Iterator[None]:
-        """Take other states for a while."""
-        before = [f.sign for f in resting], [s.held for s, _ in contacts]
-        for friction, sign in zip(resting, signs, strict=True):
-            friction.sign = sign
-        for (stop, at), is_held in zip(contacts, stays, strict=True):
-            stop.held = at if is_held else 0
-        yield
-        for friction, sign in zip(resting, before[0], strict=True):
-            friction.sign = sign
-        for (stop, _), held in zip(contacts, before[1], strict=True):
-            stop.held = held
 
 
 def held_parameters(n: int, held: set[int]) -> Parameters:

@@ -11,10 +11,9 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from true_error.arithmetic import Arithmetic, as_longs
-from true_error.arrays import Floats, Longs
+from true_error.arithmetic import Arithmetic, Floats, Longs, as_longs
+from true_error.asked import Drawn
 from true_error.constants import inertia, smooth_torques
-from true_error.drawn import Drawn
 from true_error.equations import System, smooth
 
 STEPS = {"double": 500, "long double": 500, "quadruple": 10}

@@ -1,35 +1,47 @@
-"""The natural cubic spline: value, first and second derivative.
-
-Its second derivative is linear between the knots and zero at the ends. The values c_i at the inner
-knots follow from the continuity of the first derivative, with h_i = t_(i+1) - t_i:
-
-    h_(i-1) c_(i-1) + 2 (h_(i-1) + h_i) c_i + h_i c_(i+1)
-        = 6 ((x_(i+1) - x_i)/h_i - (x_i - x_(i-1))/h_(i-1))
-"""
+"""Curves over time, with their first two derivatives: sinusoids and natural cubic splines."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
 from reference.arithmetic import Arithmetic, Number
 
 
+def sinusoid(
+    t: Number, described: Mapping[str, float], arithmetic: Arithmetic
+) -> tuple[Number, Number, Number]:
+    """Return amplitude sin(angular_frequency t + phase), its rate and its acceleration."""
+    number = arithmetic.number
+    amplitude, w = number(described["amplitude"]), number(described["angular_frequency"])
+    argument = w * number(t) + number(described.get("phase", 0.0))
+    sine, cosine = arithmetic.sin(argument), arithmetic.cos(argument)
+    return amplitude * sine, amplitude * w * cosine, -amplitude * w * w * sine
+
+
 def second_derivatives(
-    knots: Sequence[Number], values: Sequence[Number], arithmetic: Arithmetic
+    knots: Sequence[Number],
+    values: Sequence[Number],
+    solve: Callable[[list[list[Number]], list[Number]], list[Number]],
 ) -> list[Number]:
-    """Solve for the second derivatives at all knots."""
-    zero, inner = arithmetic.number(0), range(1, len(knots) - 1)
+    """Return c_i, the second derivatives of the natural spline at all knots; 0 at the ends.
+
+    They follow from the continuity of the first derivative, with h_i = t_(i+1) - t_i:
+
+        h_(i-1) c_(i-1) + 2 (h_(i-1) + h_i) c_i + h_i c_(i+1)
+            = 6 ((x_(i+1) - x_i)/h_i - (x_i - x_(i-1))/h_(i-1))
+    """
+    zero, inner = 0 * knots[0], range(1, len(knots) - 1)
     h = [after - before for before, after in pairwise(knots)]
     slopes = [(b - a) / d for (a, b), d in zip(pairwise(values), h, strict=True)]
     matrix = [[zero] * len(knots) for _ in knots]
     right = [zero] * len(knots)
     for end in (0, -1):
-        matrix[end][end] = arithmetic.number(1)
+        matrix[end][end] = zero + 1
     for i in inner:
         matrix[i][i - 1], matrix[i][i], matrix[i][i + 1] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
         right[i] = 6 * (slopes[i] - slopes[i - 1])
-    return arithmetic.solve(matrix, right)
+    return solve(matrix, right)
 
 
 def natural_spline(
@@ -38,7 +50,7 @@ def natural_spline(
     """Return value, rate and acceleration at a time between the first knot and the last."""
     number = arithmetic.number
     t, knots, values = number(t), [number(k) for k in knots], [number(x) for x in values]
-    curvatures = second_derivatives(knots, values, arithmetic)
+    curvatures = second_derivatives(knots, values, arithmetic.solve)
     i = max(k for k in range(len(knots) - 1) if knots[k] <= t or k == 0)
     h, before, after = knots[i + 1] - knots[i], t - knots[i], knots[i + 1] - t
     c0, c1 = curvatures[i], curvatures[i + 1]
