@@ -19,15 +19,16 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = [*ROOT.glob("*.md"), *sorted((ROOT / "docs").rglob("*.md"))]
 BLOCK = re.compile(r"```python\n(.*?)```(?:\n\n```text\n(.*?)```)?", re.DOTALL)
-RUN_BY_THE_SITE_ALONE = {
+RUN_ELSEWHERE = {
     *("accuracy_cost", "horizon", "long_runs", "see_it"),
     *("add_an_effect", "derive_engineer", "derive_student", "derive_teacher"),
+    *(path.stem for path in (ROOT / "docs/effects").iterdir()),
 }
-"""Pages whose lines take long, or need the files of a clone or of a reader."""
+"""Pages whose lines have tests of their own, or take long and run where the site is built."""
 BLOCKS = {
     str(path.relative_to(ROOT)): blocks
     for path in DOCUMENTS
-    if path.stem not in RUN_BY_THE_SITE_ALONE and (blocks := BLOCK.findall(path.read_text()))
+    if path.stem not in RUN_ELSEWHERE and (blocks := BLOCK.findall(path.read_text()))
 }
 NOTEBOOKS = sorted((ROOT / "examples/notebooks").glob("*.ipynb"))
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

@@ -136,6 +136,6 @@ def test_a_case_that_keeps_few_times_is_shown_as_it_moves(tmp_path, monkeypatch)
 
     monkeypatch.setattr(Stage, "show", show)
     monkeypatch.chdir(tmp_path)
-    assert main(["show", "case.toml", "-o", "case.gif", "--fps", "2", "--speed", "2"]) == 0
+    assert main(["show", "case.toml", "-o", "case.gif", "--fps", "1", "--speed", "3"]) == 0
     times, chains = zip(*shown, strict=True)
     assert np.abs(np.array(chains) - places(simulate(BOUNCING), np.array(times))).max() < 1e-12
