@@ -224,6 +224,9 @@ VALUE_ERRORS = [
     ("link 1: mass = 0.0: must be finite and > 0",
      lambda: pc.Scene(links=[pc.Link(mass=0, length=1)])),
     ("q[0] = nan: must be finite (rad)", lambda: pc.angles_to_vertical([nan])),
+    *[(f'zero = {zero!r}: must be "hanging" or "upright"', partial(turn, 0.0, zero=zero))
+      for turn in (pc.angles_from_vertical, pc.angles_to_vertical)
+      for zero in ("up", "Upright", "", None, 1, ["upright"])],
     ("q: shape (3,): must be (2,)", lambda: BOOK.explain(q=[1, 2, 3])),
     ("t = nan: must be finite", lambda: BOOK.explain(t=nan)),
     *[(f"{name}: has 10000000 numbers: must have", partial(simulate, **{name: np.ones(10**7)}))
