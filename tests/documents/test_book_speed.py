@@ -1,4 +1,4 @@
-"""What docs/background/book_speed.md compares solves one case, and what it says is recorded."""
+"""What docs/background/book_speed.md compares solves one case."""
 
 from __future__ import annotations
 

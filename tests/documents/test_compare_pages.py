@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -18,6 +19,7 @@ sys.path.append(str(PROJECT / "bench" / "compare"))
 import chains  # noqa: E402
 import compare  # noqa: E402
 import effects  # noqa: E402
+import excerpts  # noqa: E402
 import forward_tables  # noqa: E402
 import overview_tables  # noqa: E402
 import pages  # noqa: E402
@@ -39,6 +41,10 @@ def test_every_written_page_is_what_its_record_says():
     made["comparison/README.md"] = pages.overview(solves)
     for page, text in made.items():
         assert (DOCS / page).read_text(encoding="utf-8") == text, page
+    told = json.loads((DOCS / "records/comparison/textbook.json").read_text())
+    for document, (name, excerpt) in excerpts.EXCERPTS.items():
+        text = (PROJECT / document).read_text()
+        assert excerpts.insert(text, name, excerpt(told)) == text, document
 
 
 TOOK_PART = [("textbook", ("pendcore",)), ("chains", ("odeint", "mujoco")), ("effects", ())]
