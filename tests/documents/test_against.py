@@ -65,16 +65,6 @@ def test_each_commit_is_first_in_every_other_turn_and_a_process_gives_its_least_
     assert (one.old, one.new) == ([7, 1], [8, 2])
 
 
-def test_turns_end_with_their_time_and_with_the_first_lack():
-    asked = []
-    old, new = Recorded("old", asked, *[1.0] * 3), Recorded("new", asked, *[1.0] * 3)
-    against.in_turns(Comparison("one step", [], []), old, new, rounds=99, seconds=0.0)
-    assert len(asked) == 4
-    lacks = Comparison("error=1e-6", [], [])
-    against.in_turns(lacks, Recorded("lacks", asked, None), new, rounds=99, seconds=math.inf)
-    assert (lacks.old, lacks.new) == ([], [1.0])
-
-
 def test_each_pair_of_processes_is_fresh_and_leaves_out_what_the_first_lacked(monkeypatch):
     asked = []
     begun = []

@@ -21,10 +21,6 @@ def run(name):
     return sol
 
 
-def with_effects(scene, *effects):
-    return pc.Scene(links=scene.links, gravity=scene.gravity, effects=effects)
-
-
 def test_a_shaken_pivot_keeps_an_inverted_pendulum_up_and_half_the_shaking_does_not():
     shaken = case("kapitza")
     tilts = []
@@ -35,7 +31,7 @@ def test_a_shaken_pivot_keeps_an_inverted_pendulum_up_and_half_the_shaking_does_
             angular_frequency=drive.y.angular_frequency,
             phase=drive.y.phase,
         )
-        scene = with_effects(shaken.scene, pc.effects.DrivenPivot(y=y))
+        scene = shaken.scene.replace(effects=[pc.effects.DrivenPivot(y=y)])
         sol = pc.simulate(scene, q0=shaken.q0, qd0=shaken.qd0, t_span=shaken.t_span)
         assert sol.t[-1] == 10.0
         tilts.append(np.degrees(np.abs(sol.q + np.pi / 2).max(axis=0)))
@@ -61,7 +57,7 @@ def test_at_first_the_motors_give_their_limit():
     at_limit = [
         pc.effects.Motor(joint=motor.joint, constant=-motor.limit) for motor in arm.scene.effects
     ]
-    expected = with_effects(arm.scene, *at_limit).accelerations(0.0, arm.q0, arm.qd0)
+    expected = arm.scene.replace(effects=at_limit).accelerations(0.0, arm.q0, arm.qd0)
     assert arm.scene.accelerations(0.0, arm.q0, arm.qd0) == pytest.approx(expected, rel=1e-12)
 
 
