@@ -20,6 +20,9 @@ SCENES = {
     "inertia of no mass within the link": (
         {"links": [pc.Link(mass=1, length=1, inertia=0.5)]},
         r"link 1: inertia = 0\.5: no mass between its joints has more than .* = 0\.25 kg m\^2"),
+    "inertia about another mass centre": (
+        {"links": [ROD, pc.Link(mass=1, length=1, center=0.4, inertia=0.26)]},
+        r"link 2: inertia = 0\.26: .* = 0\.24 kg"),
     "mass in grams": (
         {"links": [ROD, pc.Link(mass=200.0, length=0.05)]},
         r"link 2: mass = 200\.0: a cube of osmium .* has .* kg: is the mass in g"),

@@ -11,6 +11,7 @@ import statistics
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -169,6 +170,11 @@ def sources_stand_where_their_headers_do(root: Path) -> Iterator[str]:
             yield f"{path.relative_to(root)} stands in another folder than {elsewhere[0].name}"
 
 
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text())
+
+
 def imports_of(tree: ast.AST, where: str = "") -> Iterator[tuple[str, str]]:
     """Yield the package's modules that a file imports, and where, if not in the open."""
     for node in ast.iter_child_nodes(tree):
@@ -214,8 +220,7 @@ def imports_go_down(root: Path) -> Iterator[str]:
             continue
         # `python -m pendcore` is the command, though Python wants it here.
         layer = "cli" if module == "pendcore.__main__" else layer_of(module)
-        tree = ast.parse(path.read_text())
-        for name, where in imports_of(tree):
+        for name, where in imports_of(parsed(path)):
             if where and str(place) in HELD_BY_USERS:
                 continue
             if where:
@@ -225,7 +230,7 @@ def imports_go_down(root: Path) -> Iterator[str]:
             elif PYTHON_LAYERS.index(layer_of(name)) > PYTHON_LAYERS.index(layer):
                 yield f"{place} ({layer}) imports {name}, which is above it"
         # Only the package's own files may load a module by its name, because SymPy is an extra.
-        if layer != "pendcore" and re.search(r"\b(import_module|__import__)\b", ast.unparse(tree)):
+        if layer != "pendcore" and re.search(r"\b(import_module|__import__)\b", path.read_text()):
             yield f"{place} imports a module by its name"
 
 
@@ -234,7 +239,7 @@ def imports_form_no_circle(root: Path) -> Iterator[str]:
     graph = {
         module: {
             name if name in modules else name.rpartition(".")[0]
-            for name, where in imports_of(ast.parse(path.read_text()))
+            for name, where in imports_of(parsed(path))
             if not where and layer_of(name) != "_core"
         }
         for module, path in modules.items()
@@ -247,7 +252,7 @@ def imports_form_no_circle(root: Path) -> Iterator[str]:
 
 def extras_stand_on_public_names(root: Path) -> Iterator[str]:
     """Extras import nothing private, and touch no private attribute of what the package gives."""
-    trees = {name: ast.parse(path.read_text()) for name, path in modules_of(root).items()}
+    trees = {name: parsed(path) for name, path in modules_of(root).items()}
     private = {
         node.attr
         for name, tree in trees.items()
@@ -297,15 +302,6 @@ def files_are_short(root: Path) -> Iterator[str]:
         yield "half of the files have more than 120 lines"
     if sum(length > 300 for length in lengths.values()) > len(lengths) / 20:
         yield "more than one file in twenty has more than 300 lines"
-
-
-def comments_have_a_subject(root: Path) -> Iterator[str]:
-    """A comment that begins with "Of" leaves it to the reader what is meant."""
-    beginning = re.compile(r'(?://+<?|#|^\s*""")\s*Of\s')
-    for path in files(root, CODE, *FOLDERS):
-        for number, line in enumerate(path.read_text().splitlines(), start=1):
-            if beginning.search(line):
-                yield f'{path.relative_to(root)}:{number} begins with "Of"'
 
 
 def kernels_call_no_libm(root: Path) -> Iterator[str]:
@@ -368,7 +364,6 @@ RULES: list[Rule] = [
     extras_stand_on_public_names,
     names_say_what_a_file_holds,
     files_are_short,
-    comments_have_a_subject,
     kernels_call_no_libm,
     matrices_own_memory_of_malloc,
     builds_use_no_flag_that_changes_bits,

@@ -1,12 +1,10 @@
-"""What docs/background/book_speed.md compares solves one case, and what it says is recorded."""
+"""What docs/background/book_speed.md compares solves one case."""
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pendcore as pc
@@ -22,15 +20,9 @@ octave = pytest.mark.skipif(
 )
 
 
-@pytest.fixture(scope="module")
-def kept() -> dict[str, Any]:
-    """Return the record that the last `make book-speed` wrote."""
-    return json.loads((DOCS / "records/book_speed.json").read_text())
-
-
 @octave
 @pytest.mark.outside_build
-def test_all_ways_solve_the_book_s_case(tmp_path: Path) -> None:
+def test_all_ways_solve_the_book_s_case(tmp_path):
     pytest.importorskip("scipy")
     program = book_speed.begin_octave(tmp_path)
     try:
@@ -53,7 +45,7 @@ def test_all_ways_solve_the_book_s_case(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
 @pytest.mark.outside_build
-def test_the_program_of_the_header_answers(tmp_path: Path) -> None:
+def test_the_program_of_the_header_answers(tmp_path):
     program = book_speed.begin_cpp(tmp_path)
     try:
         assert float(program.ask("call 1000")) > 0.0
@@ -61,15 +53,8 @@ def test_the_program_of_the_header_answers(tmp_path: Path) -> None:
         program.close()
 
 
-def test_numpy_s_module_is_the_core_s_right_hand_side() -> None:
+def test_numpy_s_module_is_the_core_s_right_hand_side():
     q, qd = np.array([0.3, 0.9]), np.array([1.0, -2.0])
     core = pc.Scene.textbook().accelerations(0.0, q, qd)
     found = book_speed.numpy_module()["accelerations"](0.0, q, qd)
     np.testing.assert_allclose(found, core, rtol=1e-13)
-
-
-@pytest.mark.parametrize("name", book_speed.TABLES)
-def test_the_page_has_the_tables_of_the_record(name: str, kept: dict[str, Any]) -> None:
-    begin, end = book_speed.BEGIN.format(name), book_speed.END.format(name)
-    table = book_speed.TABLES[name](kept)
-    assert begin + table + end in (DOCS / "background/book_speed.md").read_text()

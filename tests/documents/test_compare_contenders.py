@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,11 +13,12 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 
 import contenders
 import stiff
-from cases import Array, Case, read_case
+from cases import read_case
 from contenders import compiled
-from contenders.contender import Contender, Unsupported
+from contenders.contender import Unsupported
 from contenders.equations import fill, jacobian, rates
 from contenders.pendcore_python import scene_of
+from dense_chain import DenseChain, joints
 from trajectory_error import position_error
 
 BARE, DAMPED, THREE = (read_case(name) for name in ("textbook", "damped_textbook", "three_links"))
@@ -34,25 +34,19 @@ CASES = {
 SETTINGS = {"tolerance": 1e-7, "step": 2e-3}
 
 
-def dense(case: Case, y: Array) -> Array:
+def dense(case, y):
     """Solve the equations of motion of uniform rods as a linear system: (qd, qdd)."""
-    n, (q, w) = case.n, np.split(y, 2)
-    m, length = np.array(case.masses), np.array(case.lengths)
-    beyond = np.append(np.cumsum(m[::-1])[::-1][1:], 0.0)
-    moment = length * (m / 2 + beyond)
-    near, far = (f.outer(range(n), range(n)) for f in (np.minimum, np.maximum))
-    inertia = length[near] * moment[far]
-    np.fill_diagonal(inertia, length**2 * (m / 3 + beyond))
-    apart = q[:, None] - q
-    turned, turning = np.diff(q, prepend=0.0), np.diff(w, prepend=0.0)
-    torque = -np.array(case.stiffness) * (turned - case.rest) - np.array(case.damping) * turning
-    forces = case.gravity * moment * np.cos(q) + torque - np.append(torque[1:], 0.0)
-    forces -= (inertia * np.sin(apart)) @ w**2
-    return np.concatenate([w, np.linalg.solve(inertia * np.cos(apart), forces)])
+    masses, lengths = np.array(case.masses), np.array(case.lengths)
+    chain = DenseChain(masses=masses, lengths=lengths, gravity=case.gravity)
+    q, qd = np.split(y, 2)
+    turned, turning = joints(case.n) @ q, joints(case.n) @ qd
+    torques = -np.array(case.stiffness) * (turned - case.rest) - np.array(case.damping) * turning
+    qdd = np.linalg.solve(chain.mass_matrix(q), chain.forces(q, qd, torques))
+    return np.concatenate([qd, qdd])
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_right_hand_sides_and_jacobians_are_those_of_the_equations_of_motion(name: str) -> None:
+def test_right_hand_sides_and_jacobians_are_those_of_the_equations_of_motion(name):
     case = CASES[name]
     scene, filled, derivatives = scene_of(case), fill(case, lambda x: x), jacobian(case)
     assert (name == "controller") == all(type(x).__name__ == "Motor" for x in scene.effects or [0])
@@ -83,13 +77,13 @@ def test_right_hand_sides_and_jacobians_are_those_of_the_equations_of_motion(nam
     ],
     ids=["masses", "lengths", "gravity", "damped three", "one rod"],
 )
-def test_a_case_that_no_closed_form_is_of_is_refused(case: Case) -> None:
+def test_a_case_that_no_closed_form_is_of_is_refused(case):
     with pytest.raises(Unsupported):
         rates(case)
 
 
 @pytest.fixture(scope="module")
-def found() -> Iterator[dict[str, Contender]]:
+def found():
     """Return all contenders that are installed: at least pendcore's own."""
     entrants, _ = contenders.installed()
     assert any(who.name == "pendcore_dopri5" for who in entrants)
@@ -99,9 +93,7 @@ def found() -> Iterator[dict[str, Contender]]:
 
 @pytest.mark.outside_build
 @pytest.mark.parametrize("name", ["bare", "damped", "three"])
-def test_every_contender_solves_the_case_that_it_is_given(
-    found: dict[str, Contender], name: str
-) -> None:
+def test_every_contender_solves_the_case_that_it_is_given(found, name):
     case = CASES[name]
     n, lengths = case.n, np.array(case.lengths)
     for who in found.values():
@@ -115,7 +107,7 @@ def test_every_contender_solves_the_case_that_it_is_given(
 
 @pytest.mark.outside_build
 @pytest.mark.parametrize("name", stiff.LOADS)
-def test_contenders_of_stiff_scenes_solve_them(found: dict[str, Contender], name: str) -> None:
+def test_contenders_of_stiff_scenes_solve_them(found, name):
     case = stiff.read_scene(name)
     assert case.uncertainty < 1e-9  # better known than what is compared
     implicit = [
@@ -131,7 +123,7 @@ def test_contenders_of_stiff_scenes_solve_them(found: dict[str, Contender], name
 
 @pytest.mark.outside_build
 @pytest.mark.parametrize("order", [3, 12, 20])
-def test_heyokas_tolerances_are_one_for_each_order(order: int) -> None:
+def test_heyokas_tolerances_are_one_for_each_order(order):
     heyoka = pytest.importorskip("heyoka")
     from contenders.heyoka_taylor import system, tolerance_of
 
@@ -143,16 +135,14 @@ def test_heyokas_tolerances_are_one_for_each_order(order: int) -> None:
 
 
 @pytest.mark.outside_build
-def test_a_failed_run_says_why(found: dict[str, Contender]) -> None:
+def test_a_failed_run_says_why(found):
     for name in found.keys() & {"pendcore_dopri5", "pendcore_dopri5_cpp"}:
         with pytest.raises(RuntimeError, match="the step fell below"):
             found[name].prepare(read_case("high_energy"), 1e-1).outcome()
 
 
 @pytest.mark.outside_build
-def test_one_that_is_missing_is_named_and_the_others_are_there(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_one_that_is_missing_is_named_and_the_others_are_there(monkeypatch, tmp_path):
     monkeypatch.setenv("SOLVES_ODEINT", str(tmp_path / "nowhere"))
     monkeypatch.setitem(sys.modules, "contenders.heyoka_taylor", None)
     present, absent = contenders.installed()
@@ -164,9 +154,7 @@ def test_one_that_is_missing_is_named_and_the_others_are_there(
 
 
 @pytest.mark.outside_build
-def test_narrower_instructions_are_labelled_so_and_give_the_same_bits(
-    found: dict[str, Contender],
-) -> None:
+def test_narrower_instructions_are_labelled_so_and_give_the_same_bits(found):
     wide = {name: who for name, who in found.items() if ", x86-64-v4, " in who.about}
     narrow = {name: who for name, who in found.items() if name.endswith("_v3")}
     assert {f"{name}_v3" for name in wide} == narrow.keys()

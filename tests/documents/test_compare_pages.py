@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,6 +19,7 @@ sys.path.append(str(PROJECT / "bench" / "compare"))
 import chains  # noqa: E402
 import compare  # noqa: E402
 import effects  # noqa: E402
+import excerpts  # noqa: E402
 import forward_tables  # noqa: E402
 import overview_tables  # noqa: E402
 import pages  # noqa: E402
@@ -30,83 +31,27 @@ from pages import PAGES  # noqa: E402
 from record import Record  # noqa: E402
 
 DOCS = PROJECT / "docs"
-RECORDS = {stem: Record.read(DOCS / PAGES[stem].record.format(stem)) for stem in compare.TIMED}
-SOLVES = {stem: RECORDS[stem] for stem in (*overview_tables.NAMES, "stiff")}
+STEMS = (*compare.TIMED, "hard_cases")
+RECORDS = {stem: Record.read(DOCS / PAGES[stem].record.format(stem)) for stem in STEMS}
 
 
-@pytest.mark.parametrize("stem", RECORDS)
-def test_written_page_is_what_the_record_says(stem: str) -> None:
-    written = (DOCS / PAGES[stem].page.format(stem)).read_text(encoding="utf-8")
-    assert pages.page(stem, RECORDS[stem]) == written
+def test_every_written_page_is_what_its_record_says():
+    made = {PAGES[stem].page.format(stem): pages.page(stem, RECORDS[stem]) for stem in STEMS}
+    solves = {stem: RECORDS[stem] for stem in (*overview_tables.NAMES, "stiff")}
+    made["comparison/README.md"] = pages.overview(solves)
+    for page, text in made.items():
+        assert (DOCS / page).read_text(encoding="utf-8") == text, page
+    told = json.loads((DOCS / "records/comparison/textbook.json").read_text())
+    for document, (name, excerpt) in excerpts.EXCERPTS.items():
+        text = (PROJECT / document).read_text()
+        assert excerpts.insert(text, name, excerpt(told)) == text, document
 
 
-def test_page_on_all_solves_is_what_the_records_say() -> None:
-    written = (DOCS / "comparison/README.md").read_text(encoding="utf-8")
-    assert pages.overview(SOLVES) == written
-    assert all(f"({stem}.md)" in written for stem in RECORDS)
+TOOK_PART = [("textbook", ("pendcore",)), ("chains", ("odeint", "mujoco")), ("effects", ())]
 
 
-@pytest.mark.parametrize("stem", overview_tables.NAMES)
-def test_every_region_in_which_a_peer_wins_is_on_the_page_and_in_the_overview(stem: str) -> None:
-    page, overview = pages.page(stem, RECORDS[stem]), pages.overview(SOLVES)
-    _, who = solve_tables.solves_of(RECORDS[stem])
-    lost = [at for at in best_against_best(who, pages.solve_tables.SIDES[0]) if at.lost]
-    section = page.partition("## Where pendcore loses")[2].partition("## ")[0]
-    for at in lost:
-        assert re.search(rf"in C\+\+: .*{solve_tables.power(at.error)}", section)
-    assert (f"({stem}.md) in C++:" in overview) == bool(lost)
-
-
-def changed(stem: str, contender: str, **scaled: float) -> Record:
-    """Return a record in which some metrics of a contender are multiplied."""
-    record = RECORDS[stem]
-    rows = record.rows()
-    for row in rows:
-        if row["contender"] == contender:
-            row |= {key: row[key] * by for key, by in scaled.items() if row.get(key) is not None}
-    return Record.of(record.measured, record.contenders, record.cases, rows)
-
-
-@pytest.mark.parametrize(
-    ("stem", "contender", "scaled", "told"),
-    [
-        ("textbook", "heyoka", {"minimum_us": 0.1}, "slower than the best peer at 1e-2 (heyoka"),
-        ("textbook", "odeint_dopri5", {"minimum_us": 0.1}, "Boost.odeint dopri5 0.0310 us"),
-        (
-            "chains",
-            "mujoco_parts",
-            {"minimum_ns": 0.01},
-            "n = 10: MuJoCo parts of mj_forward takes",
-        ),
-        ("chains", "pendcore", {"minimum_ns": 3.0}, "promised is at most 1/5: **missed**"),
-        ("effects", "pendcore_step", {"instructions": 2.0}, "in C++ programs"),
-        ("effects", "one_effect_more", {"instructions": 1.1}, "executes 168.3: **missed**"),
-        ("effects", "mujoco_forward", {"minimum_ns": 1e-3}, "viscous joint in a call"),
-    ],
-)
-def test_a_loss_is_told_where_the_record_has_one(
-    stem: str, contender: str, scaled: dict[str, float], told: str
-) -> None:
-    assert told in pages.page(stem, changed(stem, contender, **scaled))
-
-
-def test_growth_is_the_power_of_n_and_what_an_effect_adds_is_beside_its_own_bare_scene() -> None:
-    grown = {n: 3.0 * n**1.5 for n in (2, 100, 300, 1000)}
-    assert forward_tables.exponent(grown) == pytest.approx(1.5, rel=1e-12)
-    assert forward_tables.exponent({2: 1.0, 100: 2.0}) is None
-    record = RECORDS["effects"]
-    bare, drag = (record.points("pendcore", case)[0] for case in ("none", "rod_drag"))
-    more = drag["minimum_ns"] - bare["minimum_ns"]
-    assert forward_tables.added(record, "rod_drag", "pendcore") == pytest.approx(more)
-    assert f"{more:+.1f} ({more / bare['minimum_ns']:+.0%})" in pages.page("effects", record)
-    assert forward_tables.exceeded(record, "rod_drag")[0] == "169 instructions in a call"
-
-
-@pytest.mark.parametrize("stem", ["textbook", "chains", "effects"])
-@pytest.mark.parametrize("left", [(), ("pendcore",), ("odeint", "mujoco")])
-def test_pages_and_figures_are_made_whoever_took_part(
-    stem: str, left: tuple[str, ...], tmp_path: Path
-) -> None:
+@pytest.mark.parametrize(("stem", "left"), TOOK_PART)
+def test_pages_and_figures_are_made_whoever_took_part(stem, left, tmp_path):
     record = RECORDS[stem]
     rows = [row for row in record.rows() if row["contender"].startswith(left or "nobody")]
     names = {row["contender"] for row in rows}
@@ -119,19 +64,8 @@ def test_pages_and_figures_are_made_whoever_took_part(
     assert page.with_suffix(".png").stat().st_size > 1000
 
 
-def test_a_record_comes_back_in_nine_digits(tmp_path: Path) -> None:
-    row = {"contender": "a", "case": "b", "setting": 1e-3, "time": 1 / 3, "said": None}
-    made = Record.of({"date": "today"}, {"a": {"label": "A"}}, {"b": {}}, [row])
-    made.write(tmp_path / "one.json")
-    found = Record.read(tmp_path / "one.json")
-    assert found.points("a", "b") == [{"setting": 1e-3, "time": 0.333333333}]
-    assert (found.measured, found.taking_part("b")[0]["label"]) == ({"date": "today"}, "A")
-
-
-def test_an_interrupted_measurement_keeps_what_it_has(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def measure(stem: str, **_: Any) -> Record:
+def test_an_interrupted_measurement_keeps_what_it_has(tmp_path, monkeypatch):
+    def measure(stem, **_):
         if stem == "chains":
             raise KeyboardInterrupt
         return RECORDS[stem]
@@ -143,9 +77,7 @@ def test_an_interrupted_measurement_keeps_what_it_has(
 
 
 @pytest.mark.outside_build
-def test_a_quick_run_of_solves_measures_whom_it_finds(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_quick_run_of_solves_measures_whom_it_finds(tmp_path, monkeypatch):
     few = ("pendcore_dopri5", "pendcore_rk4", "pendcore_dopri5_cpp", "odeint_dopri5", "heyoka")
     chosen = {"takes_part": few.__contains__, "tightest": 1e-5, "facts": None}
     monkeypatch.setattr(solves.measure, "__kwdefaults__", chosen)
@@ -163,9 +95,7 @@ def test_a_quick_run_of_solves_measures_whom_it_finds(
 
 
 @pytest.mark.outside_build
-def test_quick_runs_of_chains_and_effects_measure_pendcore(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_quick_runs_of_chains_and_effects_measure_pendcore(tmp_path, monkeypatch):
     try:
         find_executable("forward_dynamics_pendcore", "PENDCORE_FORWARD_DYNAMICS")
     except ImportError as absence:
@@ -185,7 +115,7 @@ def test_quick_runs_of_chains_and_effects_measure_pendcore(
     assert {name for name in measured.cases if measured.points("pendcore", name)} == ours
 
 
-def test_every_effect_is_carried_by_the_side_that_says_so() -> None:
+def test_every_effect_is_carried_by_the_side_that_says_so():
     folder = Path(effects.__file__).parent / "contenders"
     for one in effects.EFFECTS:
         for says, file in ((one.ours, "pendcore_forward.cpp"), (one.theirs, "mujoco_scene.cpp")):

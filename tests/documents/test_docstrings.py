@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import doctest
+import functools
 import inspect
-from collections.abc import Iterator
 from types import ModuleType
-from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -25,7 +24,7 @@ EXTRAS = {
 }
 
 
-def public() -> Iterator[tuple[str, Any]]:
+def public():
     """Yield what users may call, with its name."""
     for module in (pc, pc.sampling, pc.effects, pc.events, pc.reducers):
         for name in module.__all__:
@@ -42,17 +41,17 @@ def public() -> Iterator[tuple[str, Any]]:
 PUBLIC = dict(public())
 
 
-def examples_of(docstring: str) -> list[doctest.Example]:
+def examples_of(docstring):
     """Return the examples in the last section of a docstring, none if it is another one."""
     before, _, section = docstring.rpartition("\nExamples\n--------\n")
     return doctest.DocTestParser().get_examples(section) if before else []
 
 
-def complaints(name: str, docstring: str) -> str:
+def complaints(name, docstring):
     """Run the examples of a docstring; return what they do other than what they show."""
     names = {"np": np, "pc": pc}
     test = doctest.DocTest(examples_of(docstring), names, name, None, None, docstring)
-    told: list[str] = []
+    told = []
     doctest.DocTestRunner(verbose=False).run(test, out=told.append)
     return "".join(told)
 
@@ -61,6 +60,8 @@ def complaints(name: str, docstring: str) -> str:
 def test_the_examples_of_a_docstring_do_what_they_show(name, tmp_path, monkeypatch):
     mpl.use("Agg")
     monkeypatch.chdir(tmp_path)
+    small = functools.partialmethod(pc.Solution.to_video, fps=4, size=(160, 90))
+    monkeypatch.setattr(pc.Solution, "to_video", small)
     docstring = inspect.getdoc(PUBLIC[name]) or ""
     examples = examples_of(docstring)
     assert examples, f"{name} has no section of examples at the end of its docstring"

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
@@ -15,8 +12,8 @@ SCENE = pc.Scene.textbook()
 
 
 @pytest.fixture(autouse=True)
-def no_figure_left_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    def show(*_: Any, **__: Any) -> None:
+def no_figure_left_over(monkeypatch):
+    def show(*_, **__):
         raise AssertionError("a plot must not show itself")
 
     monkeypatch.setattr(plt, "show", show)
@@ -25,19 +22,19 @@ def no_figure_left_over(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def sol() -> pc.Solution:
+def sol():
     return pc.Case.textbook().simulate()
 
 
-def run(t_end: float = 5, q0: Any = 1.0, **options: Any) -> pc.Solution:
+def run(t_end=5, q0=1.0, **options):
     return pc.simulate(SCENE, (0, t_end), q0, **options)
 
 
-def legend(axes: Any) -> list[str]:
+def legend(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def test_labels_units_colors_and_curves_are_the_books(sol: pc.Solution) -> None:
+def test_labels_units_colors_and_curves_are_the_books(sol):
     lines = sol.plot()
     axes = [line.axes for line in lines]
     assert [ax.get_ylabel() for ax in axes] == ["q1 (deg)", "q2 (deg)"]
@@ -63,9 +60,7 @@ def test_labels_units_colors_and_curves_are_the_books(sol: pc.Solution) -> None:
     ],
     ids=str,
 )
-def test_curves_are_smooth_however_few_steps_or_times_are_kept(
-    options: dict[str, Any], first: float, last: float
-) -> None:
+def test_curves_are_smooth_however_few_steps_or_times_are_kept(options, first, last):
     sol = pc.simulate(SCENE, **{"t_span": (0, 5), "q0": [0.5, 1.0]} | options)
     assert len(sol.t) < 100
     t = sol.plot()[0].get_xdata()
@@ -75,13 +70,13 @@ def test_curves_are_smooth_however_few_steps_or_times_are_kept(
         assert set(sol.t) <= set(t)
 
 
-def test_a_single_point_can_be_seen() -> None:
+def test_a_single_point_can_be_seen():
     line = pc.simulate(SCENE, q0=1.0, t_span=(5, 5)).plot()[0]
     assert len(line.get_xdata()) == 1
     assert line.get_marker() == "."
 
 
-def test_it_draws_into_the_axes_it_is_given(sol: pc.Solution) -> None:
+def test_it_draws_into_the_axes_it_is_given(sol):
     _, axes = plt.subplots(1, 2)
     assert [line.axes for line in sol.plot(ax=axes)] == list(axes)
     assert len(plt.get_fignums()) == 1
@@ -92,17 +87,17 @@ def test_it_draws_into_the_axes_it_is_given(sol: pc.Solution) -> None:
 
 
 @pytest.mark.parametrize("ax", ["axes", 5, [None, None]], ids=repr)
-def test_what_is_no_axes_is_refused_by_name(sol: pc.Solution, ax: Any) -> None:
+def test_what_is_no_axes_is_refused_by_name(sol, ax):
     with pytest.raises(TypeError, match=r"^ax = .*: must be matplotlib Axes, one, or 2"):
         sol.plot(ax=ax)
 
 
-def test_a_wrong_number_of_axes_is_refused(sol: pc.Solution) -> None:
+def test_a_wrong_number_of_axes_is_refused(sol):
     with pytest.raises(ValueError, match=r"^ax: 3 axes: must be one, or 2"):
         sol.plot(ax=plt.subplots(3, 1)[1])
 
 
-def test_solutions_on_the_same_axes_can_be_told_apart(sol: pc.Solution) -> None:
+def test_solutions_on_the_same_axes_can_be_told_apart(sol):
     first = sol.plot(label="rtol 1e-9")
     second = run().plot([line.axes for line in first], label="another start")
     for one, other in zip(first, second, strict=True):
@@ -110,7 +105,7 @@ def test_solutions_on_the_same_axes_can_be_told_apart(sol: pc.Solution) -> None:
         assert legend(one.axes) == ["rtol 1e-9", "another start"]
 
 
-def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol: pc.Solution) -> None:
+def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol):
     _, ax = plt.subplots()
     sol.plot(ax=ax)
     assert ax.get_ylabel() == "q (deg)"
@@ -123,14 +118,14 @@ def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol: pc.Solut
 
 
 @pytest.mark.parametrize("names", [("color", "linestyle", "linewidth"), ("c", "ls", "lw")])
-def test_lines_are_drawn_as_asked(sol: pc.Solution, names: tuple[str, ...]) -> None:
+def test_lines_are_drawn_as_asked(sol, names):
     asked = dict(zip(names, ("tab:green", ":", 3.0), strict=True))
     for line in sol.plot(**asked):
         assert to_rgb(line.get_color()) == to_rgb("tab:green")
         assert (line.get_linestyle(), line.get_linewidth()) == (":", 3.0)
 
 
-def test_rest_looks_like_rest_and_what_is_drawn_after_it_is_seen_whole(sol: pc.Solution) -> None:
+def test_rest_looks_like_rest_and_what_is_drawn_after_it_is_seen_whole(sol):
     hanging = run(q0=np.pi / 2).plot()
     axes = hanging[0].axes
     assert np.ptp(axes.get_ylim()) == pytest.approx(0.1)
@@ -142,7 +137,7 @@ def test_rest_looks_like_rest_and_what_is_drawn_after_it_is_seen_whole(sol: pc.S
     assert low < angles.min() < angles.max() < high
 
 
-def test_late_times_are_written_out() -> None:
+def test_late_times_are_written_out():
     """They do not appear as the last digits of an offset in the corner."""
     line = pc.simulate(SCENE, q0=1.0, t_span=(2e4, 2e4 + 1)).plot()[0]
     line.figure.canvas.draw()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pendcore as pc
 import pytest
@@ -16,12 +14,12 @@ DRAG = pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)
 
 
 @pytest.fixture(scope="module")
-def sol() -> pc.Solution:
+def sol():
     down = pc.events.LinkAngle(1, np.pi / 2)
     return pc.simulate(BOOK, (0, 5), [0.8, 1.0], events=[down], ledger=True)
 
 
-def test_rates_are_those_of_the_run_in_rad_per_second(sol: pc.Solution) -> None:
+def test_rates_are_those_of_the_run_in_rad_per_second(sol):
     lines = sol.plot(axes(2), what="rates")
     for i, line in enumerate(lines):
         t, curve = line.get_data()
@@ -30,7 +28,7 @@ def test_rates_are_those_of_the_run_in_rad_per_second(sol: pc.Solution) -> None:
         assert line.axes.get_xlabel() == "t (s)"
 
 
-def test_reactions_have_components_and_sizes_in_newtons(sol: pc.Solution) -> None:
+def test_reactions_have_components_and_sizes_in_newtons(sol):
     lines = sol.plot(axes(2), what="reactions")
     assert [line.get_label() for line in lines] == [
         "F_01 x", "F_01 y", "|F_01|", "F_12 x", "F_12 y", "|F_12|",
@@ -41,7 +39,7 @@ def test_reactions_have_components_and_sizes_in_newtons(sol: pc.Solution) -> Non
     assert lines[0].axes.get_ylabel() == "F_01 (N)"
 
 
-def test_the_energy_has_its_ledger_below(sol: pc.Solution) -> None:
+def test_the_energy_has_its_ledger_below(sol):
     damped = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
     run = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True)
     lines = run.plot(axes(2), what="energy")
@@ -55,7 +53,7 @@ def test_the_energy_has_its_ledger_below(sol: pc.Solution) -> None:
     assert len(bare.plot(axes(), what="energy")) == 3
 
 
-def test_the_path_is_that_of_the_tip_and_y_points_down(sol: pc.Solution) -> None:
+def test_the_path_is_that_of_the_tip_and_y_points_down(sol):
     ax = axes()
     (line,), (other,) = (sol.plot(ax, what="path") for _ in range(2))
     x, y = line.get_data()
@@ -66,7 +64,7 @@ def test_the_path_is_that_of_the_tip_and_y_points_down(sol: pc.Solution) -> None
     assert line.axes.get_ylabel() == "y (m), downwards"
 
 
-def test_the_phase_portrait_has_a_curve_for_each_link(sol: pc.Solution) -> None:
+def test_the_phase_portrait_has_a_curve_for_each_link(sol):
     lines = sol.plot(axes(), what="phase")
     assert len(lines) == 2
     assert lines[1].get_xdata()[0] == sol.q[0, 1]
@@ -74,20 +72,20 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol: pc.Solution) -> None:
     assert lines[0].axes.get_xlabel() == "q (rad)"
 
 
-def test_a_section_shows_the_states_at_an_event(sol: pc.Solution) -> None:
+def test_a_section_shows_the_states_at_an_event(sol):
     (line,) = sol.plot(axes(), what="section", link=2)
     assert len(line.get_xdata()) == len(sol.events[0]) > 2
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
 
 
-def test_a_section_without_events_says_how_to_look_for_them() -> None:
+def test_a_section_without_events_says_how_to_look_for_them():
     run = pc.Case.textbook().simulate()
     with pytest.raises(ValueError, match=r"looked for no event: give simulate\(\.\.\., events="):
         run.plot(axes(), what="section")
 
 
-def test_a_strip_has_a_pose_and_its_time_for_each_time(sol: pc.Solution) -> None:
+def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
     artists = sol.plot(axes(), what="strip", t=[0.0, 1.5, 4.0])
     lines, texts = artists[::2], artists[1::2]
     assert [text.get_text() for text in texts] == ["0 s", "1.5 s", "4 s"]
@@ -96,7 +94,7 @@ def test_a_strip_has_a_pose_and_its_time_for_each_time(sol: pc.Solution) -> None
     assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
 
 
-def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration() -> None:
+def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
     """By another way: the acceleration of mass centres from their places."""
     drive = pc.effects.DrivenPivot(x=pc.effects.Sinusoid(amplitude=0.05, angular_frequency=7.0))
     scene = BOOK.replace(effects=[DRAG, pc.effects.Payload(mass=0.4), drive])
@@ -122,7 +120,7 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration() -> None
     assert drag @ speed < 0  # drag brakes
 
 
-def test_a_fast_pivot_is_no_force_on_a_link() -> None:
+def test_a_fast_pivot_is_no_force_on_a_link():
     shaken = pc.effects.DrivenPivot(y=pc.effects.Sinusoid(amplitude=0.01, angular_frequency=5e3))
     scene = BOOK.replace(effects=[shaken, DRAG])
     state = np.array([1e-3]), np.array([[0.3, 0.9]]), np.array([[2.0, -5.0]])
@@ -134,7 +132,7 @@ def test_a_fast_pivot_is_no_force_on_a_link() -> None:
     assert 0.1 < np.hypot(*second[-1][2]) / np.hypot(*slow_drag) < 1e3
 
 
-def test_free_bodies_show_each_force_by_its_size(sol: pc.Solution) -> None:
+def test_free_bodies_show_each_force_by_its_size(sol):
     artists = sol.plot(axes(), what="free_bodies", t=1.0, color="b")
     axis = artists[0].axes
     sizes = [text.get_text() for text in axis.texts if text.get_text().endswith("N")]
@@ -142,7 +140,7 @@ def test_free_bodies_show_each_force_by_its_size(sol: pc.Solution) -> None:
     assert axis.get_title() == "t = 1 s"
 
 
-def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
+def test_what_is_past_the_horizon_is_shaded_or_pale():
     chaotic = pc.simulate(BOOK, q0=0.0, t_span=(0, 30))
     until = chaotic.valid_until()
     assert until < 25
@@ -160,7 +158,7 @@ def test_what_is_past_the_horizon_is_shaded_or_pale() -> None:
     assert not right[0].axes.patches
 
 
-REFUSED: list[tuple[dict[str, Any], str]] = [
+REFUSED = [
     ({"wat": "rates"}, r"Solution\.plot: has no parameter 'wat': did you mean"),
     ({"colour": "r"}, "no parameter 'colour': did you mean 'color'"),
     ({"data": 1}, "no parameter 'data'"),
@@ -177,13 +175,13 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-def test_what_a_figure_cannot_show_is_refused(sol: pc.Solution) -> None:
+def test_what_a_figure_cannot_show_is_refused(sol):
     for given, message in REFUSED:
         with pytest.raises((ValueError, TypeError), match=message):
             sol.plot(axes(), **given)
 
 
-def test_poses_are_at_the_kept_times_unless_others_are_asked_for() -> None:
+def test_poses_are_at_the_kept_times_unless_others_are_asked_for():
     later = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.0, 4.5])
     texts = [text.get_text() for text in later.plot(axes(), what="strip")[1::2]]
     assert texts == ["1 s", "1.5 s", "2 s", "2.5 s", "3 s", "3.5 s", "4 s", "4.5 s"]
@@ -193,7 +191,7 @@ def test_poses_are_at_the_kept_times_unless_others_are_asked_for() -> None:
 
 @pytest.mark.parametrize("what", [kind for kind in KINDS if kind != "section"])
 @pytest.mark.parametrize("links", [1, 3])
-def test_every_figure_is_drawn_into_a_file(tmp_path: Any, what: str, links: int) -> None:
+def test_every_figure_is_drawn_into_a_file(tmp_path, what, links):
     rods = [pc.Link(mass=1.0, length=0.5)] * links
     run = pc.simulate(pc.Scene(links=rods), q0=0.4, t_span=(0, 2))
     save_figure(run, tmp_path / "figure.png", what=what)

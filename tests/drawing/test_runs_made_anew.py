@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import re
 from functools import partial
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pendcore as pc
@@ -16,7 +14,7 @@ from pendcore.page import html
 from runs_that_kept_little import BOTTOM, SWINGING, TEXTBOOK, axes, few, places, simulate, stage
 
 
-def test_a_page_that_plays_back_has_the_dense_output(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_plays_back_has_the_dense_output(monkeypatch):
     monkeypatch.setattr(html, "core_for_browsers", lambda: None)
     for rate, frames in ((0.0, 600), (25.0, 2500)):  # one whenever a link has turned by 0.1 rad
         kept, dense = few(SWINGING, qd0=rate), simulate(SWINGING, qd0=rate)
@@ -26,13 +24,13 @@ def test_a_page_that_plays_back_has_the_dense_output(monkeypatch: pytest.MonkeyP
         assert np.abs(np.array(played["states"]).T - true).max() <= 1e-5 * np.abs(true).max()
 
 
-def data_of(run: pc.Solution) -> Any:
+def data_of(run):
     """Return what the page of a run is given."""
     (data,) = re.findall(r'id="data">(.*?)</script>', html.page_of(run), re.DOTALL)
     return json.loads(data)
 
 
-def test_a_page_ends_where_an_event_ended_the_run() -> None:
+def test_a_page_ends_where_an_event_ended_the_run():
     run = few(TEXTBOOK, events=[BOTTOM])
     told = data_of(run)["case"]["run"]
     assert told["t_end"] == run._run.t_reached < 10
@@ -40,7 +38,7 @@ def test_a_page_ends_where_an_event_ended_the_run() -> None:
     assert data_of(few(TEXTBOOK))["case"]["run"]["t_end"] == 10
 
 
-def thumbnail(run: pc.Solution) -> tuple[list[Any], str]:
+def thumbnail(run):
     """Return the tip's path and the poses of a drawing, in pixels, and its title."""
     told = run._repr_html_()
     lines = [
@@ -51,7 +49,7 @@ def thumbnail(run: pc.Solution) -> tuple[list[Any], str]:
 
 
 @pytest.mark.parametrize("keep", [{"store": "end"}, {"t_eval": [0.0, 5.0, 10.0]}, {}])
-def test_a_thumbnail_is_the_dense_output(keep: dict[str, Any]) -> None:
+def test_a_thumbnail_is_the_dense_output(keep):
     run = simulate(SWINGING, **keep)
     (path, *poses), title = thumbnail(run)
     assert title == "the chain at 6 times, the last of them plainest, and the path of its tip"
@@ -68,12 +66,12 @@ class Counted:
 
     calls = 0
 
-    def __call__(self, t: float, q: Any, qd: Any) -> Any:
+    def __call__(self, t, q, qd):
         self.calls += 1
         return -0.1 * qd
 
 
-def test_a_notebook_waits_for_no_long_second_run_and_calls_no_function_of_ones_own() -> None:
+def test_a_notebook_waits_for_no_long_second_run_and_calls_no_function_of_ones_own():
     law = Counted()
     own = simulate(SWINGING.replace(effects=[pc.effects.User(law)]), store="end")
     long = simulate(SWINGING, store="end", t_span=(0, 400), method="dopri5", rtol=1e-12)
@@ -85,7 +83,7 @@ def test_a_notebook_waits_for_no_long_second_run_and_calls_no_function_of_ones_o
     assert law.calls == before
 
 
-def test_times_that_were_kept_close_together_are_drawn_without_a_second_run() -> None:
+def test_times_that_were_kept_close_together_are_drawn_without_a_second_run():
     law, t = Counted(), np.linspace(0, 10, 3001)
     run = simulate(SWINGING.replace(effects=[pc.effects.User(law)]), t_eval=t)
     before = law.calls
@@ -94,7 +92,7 @@ def test_times_that_were_kept_close_together_are_drawn_without_a_second_run() ->
 
 
 @pytest.mark.parametrize("store", ["dense", "end"])
-def test_chords_are_not_seen_where_links_are_fast(store: str) -> None:
+def test_chords_are_not_seen_where_links_are_fast(store):
     """At 48 rad/s, over more steps than a figure has points."""
     run = simulate(SWINGING, qd0=48.0, t_span=(0, 60), method="taylor", store=store)
     assert run.stats.accepted > 1000
@@ -110,7 +108,7 @@ def test_chords_are_not_seen_where_links_are_fast(store: str) -> None:
     assert np.hypot(*((trace[1:] + trace[:-1]) / 2).T).min() > 0.99
 
 
-def test_a_swing_kept_where_it_turns_is_not_taken_for_rest() -> None:
+def test_a_swing_kept_where_it_turns_is_not_taken_for_rest():
     turn = pc.events.RateZero(link=1)
     turns = simulate(SWINGING, events=[turn]).events[0].t[1::2]
     kept = simulate(SWINGING, t_eval=turns)
@@ -121,7 +119,7 @@ def test_a_swing_kept_where_it_turns_is_not_taken_for_rest() -> None:
 SENTENCE = r"^t: this solution keeps no dense output: simulate with store=\"dense\"; "
 
 
-def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_path: Path) -> None:
+def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_path):
     damping = [0.1]
     moody = pc.effects.User(function=lambda t, q, qd: -damping[0] * qd)
     run = simulate(SWINGING.replace(effects=[moody]), t_eval=[0.0, 5.0, 10.0])
@@ -142,9 +140,7 @@ def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_
     assert not [*tmp_path.iterdir()]
 
 
-def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(
-    tmp_path: Path,
-) -> None:
+def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(tmp_path):
     run = few(TEXTBOOK)
     run.save(tmp_path / "run.npz")
     with np.load(tmp_path / "run.npz") as file:
@@ -157,7 +153,7 @@ def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(
     assert "the path of its tip" not in other._repr_html_()
 
 
-def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch):
     run = simulate(TEXTBOOK, store="end")
     needed = 8 * run.stats.accepted * 4 * (simulate(TEXTBOOK)._run.dense_degree + 1)
     monkeypatch.setattr(dense_output, "MOST_BYTES", needed - 1)
@@ -167,7 +163,7 @@ def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch: pytest.Monk
     run.plot(axes(2))
 
 
-def test_an_exception_of_ones_own_function_passes_without_the_inner_run() -> None:
+def test_an_exception_of_ones_own_function_passes_without_the_inner_run():
     mass = [1.0]
     pull = pc.effects.User(function=lambda t, q, qd: -0.1 / mass[0] * qd)
     run = simulate(SWINGING.replace(effects=[pull]), store="end")

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pendcore as pc
 import pytest
@@ -14,14 +11,14 @@ from runs_that_kept_little import BOUNCING, RESTING, RUNS, STOP, axes, few, plac
 
 
 @pytest.fixture(params=RUNS)
-def pair(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[pc.Solution, pc.Solution]:
+def pair(request, tmp_path):
     """Return a run that kept little, and the same run with its dense output."""
     kept, dense = RUNS[request.param]
     return kept(tmp_path), dense()
 
 
 @pytest.mark.every_value("pair")
-def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.Solution]) -> None:
+def test_each_frame_of_a_film_is_the_dense_output(pair):
     kept, dense = pair
     if kept.accuracy is None:  # the runs that an error asks for depend on what is kept
         assert kept._run.t_reached == dense._run.t_reached
@@ -47,7 +44,7 @@ def test_each_frame_of_a_film_is_the_dense_output(pair: tuple[pc.Solution, pc.So
         assert np.abs(np.array(trace.get_data())[:, -1] - true[k, -1]).max() < 1e-12
 
 
-def test_no_frame_and_no_curve_shows_a_rod_beyond_its_stop() -> None:
+def test_no_frame_and_no_curve_shows_a_rod_beyond_its_stop():
     for kept in (few(BOUNCING), simulate(RESTING)):
         film = stage(kept)
         shown = np.array([film.show(k)[1].get_data() for k in range(len(film.times))])
@@ -59,15 +56,15 @@ def test_no_frame_and_no_curve_shows_a_rod_beyond_its_stop() -> None:
     assert np.rad2deg(STOP) + 1e-7 >= curve.max() > np.rad2deg(1.8)
 
 
-def angles_and_rates(run: pc.Solution, t: Any) -> Any:
+def angles_and_rates(run, t):
     return (np.ascontiguousarray(half.T) for half in np.split(run(t), 2))
 
 
-def reactions(run: pc.Solution, t: Any) -> Any:
+def reactions(run, t):
     return run.scene._compiled.reactions(t, *angles_and_rates(run, t))
 
 
-def values(what: str, run: pc.Solution, t: Any) -> list[Any]:
+def values(what, run, t):
     """Return what the curves of a figure have to be, from dense output and the scene alone."""
     q, qd = angles_and_rates(run, t)
     if what == "angles":
@@ -83,7 +80,7 @@ def values(what: str, run: pc.Solution, t: Any) -> list[Any]:
 
 @pytest.mark.parametrize("what", ["angles", "rates", "reactions", "energy"])
 @pytest.mark.parametrize("kept", ["times", "stop", "loaded", "resumed past events", "broken off"])
-def test_each_curve_over_time_is_the_dense_output(kept: str, what: str, tmp_path: Path) -> None:
+def test_each_curve_over_time_is_the_dense_output(kept, what, tmp_path):
     run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
     lines = run.plot(axes(1 if what == "energy" else 2), what=what)
     true = values(what, dense, lines[0].get_xdata())
@@ -94,7 +91,7 @@ def test_each_curve_over_time_is_the_dense_output(kept: str, what: str, tmp_path
 
 
 @pytest.mark.parametrize("kept", ["times", "end", "stop", "member"])
-def test_paths_phases_and_poses_are_the_dense_output(kept: str, tmp_path: Path) -> None:
+def test_paths_phases_and_poses_are_the_dense_output(kept, tmp_path):
     run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
     t = run.plot(axes(2))[0].get_xdata()
     (path,) = run.plot(axes(), what="path")
@@ -112,7 +109,7 @@ def test_paths_phases_and_poses_are_the_dense_output(kept: str, tmp_path: Path) 
     assert told[0] == told[1]
 
 
-def test_the_ledger_is_drawn_between_the_times_that_were_kept() -> None:
+def test_the_ledger_is_drawn_between_the_times_that_were_kept():
     kept, at_steps = few(BOUNCING, ledger=True), simulate(BOUNCING, ledger=True)
     lines = {line.get_label(): line for line in kept.plot(axes(2), what="energy")}
     ledger = at_steps.energy().ledger
@@ -126,21 +123,19 @@ def test_the_ledger_is_drawn_between_the_times_that_were_kept() -> None:
     assert np.abs(lines["residual"].get_ydata()).max() < 1e-7
 
 
-def test_a_case_that_keeps_few_times_is_shown_as_it_moves(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_case_that_keeps_few_times_is_shown_as_it_moves(tmp_path, monkeypatch):
     case = few(BOUNCING).case()
     (tmp_path / "case.toml").write_text(case.to_toml())
-    shown: list[Any] = []
+    shown = []
     draw = Stage.show
 
-    def show(self: Stage, k: int) -> Any:
+    def show(self, k):
         found = draw(self, k)
         shown.append((self.times[k], np.array(found[1].get_data()).T))
         return found
 
     monkeypatch.setattr(Stage, "show", show)
     monkeypatch.chdir(tmp_path)
-    assert main(["show", "case.toml", "-o", "case.gif", "--fps", "4", "--speed", "2"]) == 0
+    assert main(["show", "case.toml", "-o", "case.gif", "--fps", "1", "--speed", "3"]) == 0
     times, chains = zip(*shown, strict=True)
     assert np.abs(np.array(chains) - places(simulate(BOUNCING), np.array(times))).max() < 1e-12

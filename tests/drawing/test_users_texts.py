@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pendcore as pc
 import pytest
@@ -17,11 +15,11 @@ NAMES = [*UNREADABLE, "_a", "__", "_$$", "5 $", r"$\theta$ sweep", "plain", "#%&
 
 
 @pytest.fixture(scope="module")
-def sol() -> pc.Solution:
+def sol():
     return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 0.5))
 
 
-def drawn(text: str, **properties: Any) -> Any:
+def drawn(text, **properties):
     """Return the pixels of a text."""
     figure = Figure(figsize=(3, 0.5))
     canvas = FigureCanvasAgg(figure)
@@ -31,18 +29,18 @@ def drawn(text: str, **properties: Any) -> Any:
 
 
 @pytest.mark.parametrize("text", UNREADABLE)
-def test_what_is_no_mathematics_is_drawn_as_it_is_written(text: str) -> None:
+def test_what_is_no_mathematics_is_drawn_as_it_is_written(text):
     with pytest.raises(ValueError, match=r"Expected|Unknown"):
         drawn(text)
     assert np.array_equal(drawn(as_drawn(text)), drawn(text, parse_math=False))
 
 
 @pytest.mark.parametrize("text", [r"$\theta$ sweep", "plain", "5 $", "_a"])
-def test_other_texts_are_drawn_as_matplotlib_draws_them(text: str) -> None:
+def test_other_texts_are_drawn_as_matplotlib_draws_them(text):
     assert np.array_equal(drawn(as_drawn(text)), drawn(text))
 
 
-def test_a_film_shows_the_name_of_every_run(sol: pc.Solution) -> None:
+def test_a_film_shows_the_name_of_every_run(sol):
     figure = Figure()
     Stage([sol] * len(NAMES), figure, Choices(), NAMES)
     legend = figure.axes[0].get_legend()
@@ -54,7 +52,7 @@ def test_a_film_shows_the_name_of_every_run(sol: pc.Solution) -> None:
 
 @pytest.mark.parametrize("what", ["angles", "reactions", "energy", "path", "phase"])
 @pytest.mark.parametrize("name", NAMES)
-def test_a_figure_shows_its_label(sol: pc.Solution, what: Any, name: str) -> None:
+def test_a_figure_shows_its_label(sol, what, name):
     figure = Figure()
     axes = figure.subplots(2 if what in ("angles", "reactions") else 1, 1)
     sol.plot(axes, what=what, label=name)
@@ -68,7 +66,7 @@ def test_a_figure_shows_its_label(sol: pc.Solution, what: Any, name: str) -> Non
 
 
 @pytest.mark.parametrize("name", UNREADABLE)
-def test_a_comparison_and_a_map_can_be_drawn_under_any_name(name: str) -> None:
+def test_a_comparison_and_a_map_can_be_drawn_under_any_name(name):
     book = pc.Case.textbook()
     cost = pc.accuracy_cost(
         book.scene, q0=book.q0, t_span=(0, 0.1), methods="dopri5", rtol=[1e-3], repeats=1, name=name

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pendcore as pc
-from pendcore import _core
-from pendcore import effects as fx
+from described_scenes import effect_of
 
 RODS = [{"mass": 1.0, "length": 1.0}, {"mass": 0.6, "length": 0.7}]
 STOP = {"kind": "joint_stop", "joint": 2, "range": [-0.5, 0.9], "restitution": 0.6}
@@ -51,16 +50,5 @@ STARTS = {"lock": {**START, "qd0": [2.0, 2.0]}}  # a locked joint is at rest
 
 
 def scene_in_python(effects: list[dict[str, Any]]) -> pc.Scene:
-    classes = {one["kind"]: getattr(fx, one["name"]) for one in _core.effect_descriptors()
-               if hasattr(fx, one["name"])}  # fmt: skip
-    parts = {"sinusoid": fx.Sinusoid, "x": fx.Sinusoid, "y": fx.Sinusoid, "pd": fx.PD,
-             "table": fx.Table}  # fmt: skip
-    made = []
-    for effect in effects:
-        values = {
-            name: parts[name](**value) if isinstance(value, dict) else value
-            for name, value in effect.items()
-            if name != "kind"
-        }
-        made.append(classes[effect["kind"]](**values))
+    made = [effect_of((one["kind"], {x: one[x] for x in one if x != "kind"})) for one in effects]
     return pc.Scene(links=[pc.Link(**rod) for rod in RODS], effects=made)

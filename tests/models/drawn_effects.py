@@ -57,10 +57,12 @@ def made(draw: st.DrawFn, cls: type[Any], n: int) -> Any:
 
 @st.composite
 def scenes(draw: st.DrawFn) -> pc.Scene:
-    """A chain of one to four rods, and what acts on it; however implausible."""
+    """A chain of one to four links, and what acts on it; however implausible."""
     n = draw(st.integers(1, 4))
-    mass_and_length = st.tuples(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
-    rods = draw(st.lists(mass_and_length, min_size=n, max_size=n))
+    size = st.floats(1e-3, 1e3)
+    link = st.builds(
+        pc.Link, mass=size, length=size, center=st.none() | size, inertia=st.none() | size
+    )
     an_effect = st.sampled_from(KINDS_OF_NUMBERS).flatmap(lambda kind: made(KINDS[kind], n))
     drawn = draw(st.lists(an_effect, max_size=4))
     locked = [effect.joint for effect in drawn if effect.kind == "lock"]
@@ -68,7 +70,7 @@ def scenes(draw: st.DrawFn) -> pc.Scene:
         warnings.simplefilter("ignore", pc.PendcoreWarning)
         try:
             return pc.Scene(
-                links=[pc.Link(mass=m, length=length) for m, length in rods],
+                links=draw(st.lists(link, min_size=n, max_size=n)),
                 gravity=draw(st.floats(-1e3, 1e3)),
                 effects=[e for e in drawn if e.kind != "lock" or locked.count(e.joint) == 1],
             )

@@ -18,17 +18,17 @@ CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
 INSTALLED = Path(pc.__file__).parent
 
 
-def on_page(language: str) -> list[str]:
+def on_page(language):
     return re.findall(rf"^```{language}\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE)
 
 
-def run(*command: str | Path) -> str:
+def run(*command):
     done = subprocess.run(command, text=True, capture_output=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
-def test_the_entry_point_names_the_package_that_cmake_searches() -> None:
+def test_the_entry_point_names_the_package_that_cmake_searches():
     (entry,) = entry_points(group="cmake.root", name="pendcore")
     root = Path(entry.load().__file__).parent
     assert (root / "lib/cmake/pendcore/pendcoreConfig.cmake").is_file()
@@ -36,7 +36,7 @@ def test_the_entry_point_names_the_package_that_cmake_searches() -> None:
 
 @pytest.mark.outside_build
 @pytest.mark.parametrize("flags", ["", "-O3 -march=native -ffast-math"])
-def test_the_pages_project_gets_the_bits_of_python_whatever_its_flags(flags, tmp_path) -> None:
+def test_the_pages_project_gets_the_bits_of_python_whatever_its_flags(flags, tmp_path):
     for name, program in zip(NAMES, on_page("cpp"), strict=True):
         (tmp_path / f"{name}.cpp").write_text(program)
     (lines,) = on_page("cmake")
@@ -68,7 +68,7 @@ def test_the_pages_project_gets_the_bits_of_python_whatever_its_flags(flags, tmp
         assert python in on_page("text")
 
 
-def forces() -> str:
+def forces():
     """Return what forces.cpp prints, by the same run in Python."""
     rod = pc.Link(mass=1.0, length=1.0)
     effects = [pc.effects.ViscousJoint(1, 0.1), pc.effects.Motor(2, constant=0.5)]
@@ -85,7 +85,7 @@ def forces() -> str:
     )
 
 
-def events() -> str:
+def events():
     """Return what events.cpp prints, by the same run in Python."""
     turn = pc.events.RateZero(link=1)
     passage = pc.events.TipLine(point=(0.0, 0.0), normal=(1.0, 0.0), direction=-1, terminal=3)
@@ -99,7 +99,7 @@ def events() -> str:
     return "".join(sorted(found)) + sol.message + "\n"
 
 
-def test_the_library_shares_no_solver_of_eigen_with_a_program() -> None:
+def test_the_library_shares_no_solver_of_eigen_with_a_program():
     """Both may bring one, for other instruction sets, and the linker keeps one of each name."""
     library = (INSTALLED / "lib/libpendcore.a").read_bytes()
     assert b"14pendcore_eigen11EigenSolver" in library

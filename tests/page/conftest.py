@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Any
 
 import pendcore as pc
 import pytest
@@ -17,7 +14,7 @@ SIZES = {"desktop": (1280, 900), "phone": (390, 844)}
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
+def browser():
     """Return a browser without a window, and skip the test where there is none."""
     selenium = pytest.importorskip("selenium.webdriver")
     if CHROMIUM is None or DRIVER is None:
@@ -39,14 +36,14 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture
-def sized(browser: Any) -> Iterator[Callable[[str], None]]:
+def sized(browser):
     """Return what makes the window as large as a "desktop" or a "phone", until the test ends."""
     yield lambda size: browser.set_window_size(*SIZES[size])
     browser.set_window_size(*SIZES["desktop"])
 
 
 @pytest.fixture
-def core() -> None:
+def core():
     """Skip a test of the core in a page where the install has none."""
     if core_for_browsers() is None:
         pytest.skip("`make page` builds the core for browsers and installs it")
@@ -55,7 +52,7 @@ def core() -> None:
 class Opened:
     """A page in the browser."""
 
-    def __init__(self, browser: Any, file: Path, fragment: str = "") -> None:
+    def __init__(self, browser, file, fragment=""):
         self.browser = browser
         browser.get("about:blank")
         browser.get_log("browser")
@@ -63,31 +60,31 @@ class Opened:
         browser.get(file.as_uri() + fragment)
         self.wait("window.pendcorePage !== undefined || !message.hidden")
 
-    def ask(self, expression: str) -> Any:
+    def ask(self, expression):
         return self.browser.execute_script(f"return {expression}")
 
-    def do(self, statement: str) -> None:
+    def do(self, statement):
         self.browser.execute_script(statement)
 
-    def wait(self, condition: str, seconds: float = 20.0) -> None:
+    def wait(self, condition, seconds=20.0):
         from selenium.webdriver.support.ui import WebDriverWait
 
         WebDriverWait(self.browser, seconds, 0.05).until(lambda _: self.ask(condition))
 
-    def text(self, name: str) -> str:
+    def text(self, name):
         return str(self.ask(f"document.getElementById({name!r}).textContent"))
 
-    def click(self, name: str) -> None:
+    def click(self, name):
         self.browser.find_element("id", name).click()
 
-    def enter(self, selector: str, value: str, event: str = "change") -> None:
+    def enter(self, selector, value, event="change"):
         """Give a menu or a field a value, as its reader does."""
         self.do(
             f"const one = document.querySelector({selector!r}); one.value = {value!r};"
             f"one.dispatchEvent(new Event({event!r}))"
         )
 
-    def drag(self, *places: tuple[float, float]) -> None:
+    def drag(self, *places):
         """Press at the first place of the window, move to the others, and let go."""
         from selenium.webdriver.common.action_chains import ActionChains
 
@@ -100,34 +97,40 @@ class Opened:
         pointer.pointer_up()
         mouse.perform()
 
-    def copied(self, button: str) -> str:
+    def copied(self, button):
         self.do("pendcorePage.copied = null")
         self.do(f"document.getElementById({button!r}).click()")
         self.wait("pendcorePage.copied !== null")
         return str(self.ask("pendcorePage.copied"))
 
-    def complaints(self) -> list[str]:
+    def complaints(self):
         """Return what the page said in the console."""
         return [one["message"] for one in self.browser.get_log("browser")]
 
 
 @pytest.fixture
-def opened(browser: Any, tmp_path: Path) -> Callable[..., Opened]:
+def opened(browser, tmp_path):
     """Return what writes the page of a solution and opens it from disk."""
 
-    def open_page(solution: pc.Solution, fragment: str = "") -> Opened:
+    def open_page(solution, fragment=""):
         return Opened(browser, solution.to_html(tmp_path / "run.html"), fragment)
 
     return open_page
 
 
 @pytest.fixture(scope="session")
-def sol() -> pc.Solution:
+def sol():
     damped = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
     return pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8))
 
 
+@pytest.fixture(scope="session")
+def file(sol, tmp_path_factory):
+    """Write the page of this solution."""
+    return sol.to_html(tmp_path_factory.mktemp("page") / "run.html")
+
+
 @pytest.fixture
-def page(sol: pc.Solution, opened: Callable[..., Opened]) -> Opened:
+def page(browser, file):
     """Return the page of this solution, opened."""
-    return opened(sol)
+    return Opened(browser, file)

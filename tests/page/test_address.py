@@ -7,11 +7,9 @@ import json
 import shutil
 import subprocess
 import tomllib
-from collections.abc import Iterator
 from copy import deepcopy
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 import numpy as np
@@ -37,20 +35,20 @@ HOSTILE_KEY = 'x=0) or __import__("os").system("id"), pc.Link(mass'
 LINES = "a = 1\n[run]\nt_end = 9\n#"
 
 
-def run() -> pc.Solution:
+def run():
     return pc.simulate(
         SCENE, q0=[0.8, 1.0], t_span=(0, 4), rtol=[1e-7] * 4, t_eval=[1.0, 2.0], store="dense"
     )
 
 
 @pytest.fixture(scope="module")
-def page() -> Any:
+def page():
     """Return what the page of a run is given."""
     text = html.page_of(run())
     return json.loads(text.partition('id="data">')[2].partition("</script>")[0])
 
 
-def read(page: Any, *texts: str) -> list[Any]:
+def read(page, *texts):
     """Return what the page makes of cases in its address."""
     if NODE is None:
         pytest.skip("node is missing (Debian: nodejs)")
@@ -63,25 +61,24 @@ def read(page: Any, *texts: str) -> list[Any]:
         check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    found: list[Any] = json.loads(done.stdout)
-    return found
+    return json.loads(done.stdout)
 
 
-def address(case: Any) -> str:
+def address(case):
     return quote(json.dumps(case), safe="")
 
 
-def test_the_case_of_a_page_comes_back_from_its_address(page: Any) -> None:
+def test_the_case_of_a_page_comes_back_from_its_address(page):
     (found,) = read(page, address(page["case"]))
     assert json.loads(found["text"]) == page["case"]
     assert read(page, found["again"].removeprefix("#case=")) == [found]
     assert pc.read_case(found["toml"]).simulate()._run.fingerprint == run()._run.fingerprint
-    made: dict[str, Any] = {}
+    made = {}
     exec(found["python"], made)
     assert made["sol"]._run.fingerprint == run()._run.fingerprint
 
 
-def test_every_option_and_effect_that_a_page_can_have_is_known(page: Any) -> None:
+def test_every_option_and_effect_that_a_page_can_have_is_known(page):
     assert {one["name"] for one in page["options"]} == set(OPTIONS) - html.LEFT_OUT
     case = deepcopy(page["case"])
     case["run"] = {
@@ -95,10 +92,10 @@ def test_every_option_and_effect_that_a_page_can_have_is_known(page: Any) -> Non
     assert json.loads(found["text"]) == case
 
 
-def changed(case: Any, path: tuple[Any, ...], value: Any) -> Any:
+def changed(case, path, value):
     """Return a case with another value at the end of a path."""
     made = {"case": deepcopy(case)}
-    place: Any = made
+    place = made
     *way, last = ("case", *path)
     for key in way:
         place = place[key]
@@ -106,7 +103,7 @@ def changed(case: Any, path: tuple[Any, ...], value: Any) -> Any:
     return made["case"]
 
 
-HOSTILE: list[tuple[tuple[Any, ...], Any, str]] = [
+HOSTILE = [
     (("link", 0, HOSTILE_KEY), 1, "link 1: there is no"),
     ((LINES,), 1, "there is no"),
     (("effect", 0, HOSTILE_KEY), 1, "effect 1: there is no"),
@@ -159,7 +156,7 @@ HOSTILE: list[tuple[tuple[Any, ...], Any, str]] = [
 """Where a case is changed, to what, and what is said of it."""
 
 
-def test_a_hostile_case_is_refused_as_a_whole_and_told_why(page: Any) -> None:
+def test_a_hostile_case_is_refused_as_a_whole_and_told_why(page):
     rows = [*HOSTILE, *(((), whole, "link: must be a list") for whole in (None, 5, "case", [], {}))]
     cases = [changed(page["case"], path, value) for path, value, _ in rows]
     wanted = [told for _, _, told in rows]
@@ -169,7 +166,7 @@ def test_a_hostile_case_is_refused_as_a_whole_and_told_why(page: Any) -> None:
         assert len(found["refused"]) < 200
 
 
-def test_a_damaged_address_is_refused_and_one_without_a_case_has_none(page: Any) -> None:
+def test_a_damaged_address_is_refused_and_one_without_a_case_has_none(page):
     whole = address(page["case"])
     cut = [whole[:k] for k in range(1, len(whole), 97)]
     for found in read(page, *cut, "%", "%ff", "[1", "1e999", '{"link":1}'):
@@ -177,7 +174,7 @@ def test_a_damaged_address_is_refused_and_one_without_a_case_has_none(page: Any)
     assert read(page, "") == [None]
 
 
-def with_infinities(value: Any) -> Any:
+def with_infinities(value):
     """Return a case with numbers in the place of the words for them."""
     if isinstance(value, dict):
         return {key: with_infinities(one) for key, one in value.items()}
@@ -186,7 +183,7 @@ def with_infinities(value: Any) -> Any:
     return float(value) if value in ("inf", "-inf") else value
 
 
-def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+def places(value, path=()):
     """Yield the way to every value in a case."""
     yield path
     if isinstance(value, dict | list):
@@ -194,7 +191,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
             yield from places(one, (*path, key))
 
 
-def test_what_is_let_in_is_never_more_than_calls_of_known_names(page: Any) -> None:
+def test_what_is_let_in_is_never_more_than_calls_of_known_names(page):
     """Every value of a case, each in turn, is something else, or has a neighbour."""
     strange = [
         'x") or print(1)', "inf", -0.0, 1e308, -5, 0, True, None, [], {}, [None], [1, "2"],
@@ -212,7 +209,7 @@ def test_what_is_let_in_is_never_more_than_calls_of_known_names(page: Any) -> No
         assert {"effect": []} | tomllib.loads(one["toml"]) == text
 
 
-def check_python(text: str) -> None:
+def check_python(text):
     """Assert that a program imports pendcore, and calls its names with numbers and text alone."""
     first, scene, sol = ast.parse(text).body
     assert ast.unparse(first) == "import pendcore as pc"
@@ -238,20 +235,20 @@ def check_python(text: str) -> None:
 class Tags(HTMLParser):
     """The tags of a page, each with its attributes, and the text of its data."""
 
-    def __init__(self, page: str) -> None:
+    def __init__(self, page):
         super().__init__()
-        self.tags: list[tuple[str, list[str]]] = []
+        self.tags = []
         self.data, self._inside = "", False
         self.feed(page)
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         self.tags.append((tag, [name for name, _ in attrs]))
         self._inside = ("id", "data") in attrs
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         self.data += data if self._inside else ""
 
-    def handle_endtag(self, tag: str) -> None:
+    def handle_endtag(self, tag):
         self._inside = False
 
 
@@ -259,7 +256,7 @@ NAME = "</script><script>alert(1)</script><!--<img src=x onerror='alert(2)'>"
 NAME += '" x="&quot;\u2028@SCRIPT@'
 
 
-def test_a_name_is_text_in_every_page_and_table() -> None:
+def test_a_name_is_text_in_every_page_and_table():
     plain, named = run(), run()
     plain.name, named.name = "a name", NAME
     before, after = Tags(html.page_of(plain)), Tags(html.page_of(named))

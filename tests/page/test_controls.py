@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pendcore as pc
 import pytest
 
-Open = Callable[..., Any]
 pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 
 
 @pytest.mark.parametrize("size", ["desktop", "phone"])
-def test_dragging_the_tip_starts_the_run_elsewhere(
-    sol: pc.Solution, opened: Open, sized: Callable[[str], None], size: str
-) -> None:
+def test_dragging_the_tip_starts_the_run_elsewhere(sol, opened, sized, size):
     sized(size)
     page = opened(sol)
     page.do("pendcorePage.go(0)")
@@ -38,7 +33,7 @@ def test_dragging_the_tip_starts_the_run_elsewhere(
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
-def test_keys_play_step_and_go_home(page: Any, browser: Any) -> None:
+def test_keys_play_step_and_go_home(page, browser):
     from selenium.webdriver.common.keys import Keys
 
     page.do("pendcorePage.play(false); pendcorePage.go(1)")
@@ -54,7 +49,7 @@ def test_keys_play_step_and_go_home(page: Any, browser: Any) -> None:
     assert re.fullmatch(r"At \d\.\d\d s: q1 [\d.-]+ degrees, q2 [\d.-]+ degrees", label)
 
 
-def test_the_picture_is_enlarged_moved_and_fitted_again(page: Any, browser: Any) -> None:
+def test_the_picture_is_enlarged_moved_and_fitted_again(page, browser):
     page.do("pendcorePage.play(false); pendcorePage.go(0)")
     view = "(() => { const { view } = pendcorePage; return [view.pixels, ...view.center] })()"
     start = page.ask("[...pendcorePage.given.start.q]")
@@ -73,7 +68,7 @@ def test_the_picture_is_enlarged_moved_and_fitted_again(page: Any, browser: Any)
     assert page.ask(view) == pytest.approx([fitted[0], fitted[1] + 30, fitted[2] + 20])
     assert page.ask("[...pendcorePage.given.start.q]") == start
 
-    def turn_the_wheel(ctrl: str) -> None:
+    def turn_the_wheel(ctrl):
         page.do(
             "pendcorePage.view.canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: -100,"
             f" ctrlKey: {ctrl}, cancelable: true, clientX: {left} + 40, clientY: {top} + 50 }}))"
@@ -90,7 +85,7 @@ def test_the_picture_is_enlarged_moved_and_fitted_again(page: Any, browser: Any)
     assert page.ask(view) == pytest.approx(fitted)
 
 
-def test_every_control_has_a_name(page: Any) -> None:
+def test_every_control_has_a_name(page):
     nameless = page.ask(
         "[...document.querySelectorAll('button, input, select, canvas')].filter((one) =>"
         " !(one.getAttribute('aria-label') || one.labels?.length || one.textContent.trim()))"
@@ -99,7 +94,7 @@ def test_every_control_has_a_name(page: Any) -> None:
     assert nameless == []
 
 
-def test_sliders_change_parameters_and_the_run(page: Any, sol: pc.Solution, browser: Any) -> None:
+def test_sliders_change_parameters_and_the_run(page, sol, browser):
     page.click("tab-setup")
     field = browser.find_element("xpath", "//label[text()='damping (N m s/rad)']/..//input")
     page.do(
@@ -114,9 +109,7 @@ def test_sliders_change_parameters_and_the_run(page: Any, sol: pc.Solution, brow
 
 
 @pytest.mark.parametrize(("name", "typed"), [("mass (kg)", "0.8"), ("length (m)", "0.35")])
-def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
-    page: Any, browser: Any, name: str, typed: str
-) -> None:
+def test_a_rod_stays_a_rod_while_its_numbers_are_typed(page, browser, name, typed):
     """On the way to 0.8 the field holds 0."""
     from selenium.webdriver.common.keys import Keys
 
@@ -136,7 +129,7 @@ def test_a_rod_stays_a_rod_while_its_numbers_are_typed(
     assert page.ask("pendcorePage.given.link[0].mass") > 0
 
 
-def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page: Any, sol: pc.Solution) -> None:
+def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page, sol):
     page.do("pendcorePage.play(false); pendcorePage.go(2)")
     x, y = page.ask(
         "(() => { const { view, run } = pendcorePage; const p = run.places(2, run.state(2));"
@@ -151,7 +144,7 @@ def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page: Any, sol: pc.S
     assert page.text("bits").startswith("hash ")
 
 
-def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page: Any) -> None:
+def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page):
     page.do("pendcorePage.given.link[0].length = -1; pendcorePage.changed()")
     assert page.text("bits") == ""
     assert page.text("trust") == "The picture is that of the last run that was possible."
@@ -159,7 +152,7 @@ def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page: A
     assert page.text("bits").startswith("the bits of Python")
 
 
-def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: Open) -> None:
+def test_a_tolerance_for_each_component_is_understood(sol, opened):
     run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), rtol=[1e-6, 1e-6, 1e-7, 1e-7])
     page = opened(run)
     page.wait("pendcorePage.validUntil !== null")
@@ -167,9 +160,7 @@ def test_a_tolerance_for_each_component_is_understood(sol: pc.Solution, opened: 
     assert page.text("bits").endswith(f"= {run._run.fingerprint}")
 
 
-def test_fixed_steps_keep_their_method_until_another_is_chosen(
-    sol: pc.Solution, opened: Open
-) -> None:
+def test_fixed_steps_keep_their_method_until_another_is_chosen(sol, opened):
     run = pc.simulate(sol.scene, q0=0.8, t_span=(0, 4), method="rk4", step=0.01)
     page = opened(run)
     assert page.ask("document.querySelector('#method select').value") == "rk4"
@@ -178,7 +169,7 @@ def test_fixed_steps_keep_their_method_until_another_is_chosen(
     assert page.ask("'step' in pendcorePage.given.run") is False
 
 
-def test_effects_are_added_and_removed(page: Any) -> None:
+def test_effects_are_added_and_removed(page):
     page.click("tab-setup")
     kinds = page.ask("Object.keys(pendcorePage.controls.defaults)")
     assert set(kinds) == {*pc.effects.kinds()} - {"user", "compiled_user"}
@@ -195,7 +186,7 @@ def test_effects_are_added_and_removed(page: Any) -> None:
     assert page.ask("message.hidden")
 
 
-IMPOSSIBLE: dict[str, Callable[[], object]] = {
+IMPOSSIBLE = {
     "gravity = -Infinity": lambda: pc.Scene.textbook().replace(gravity=-np.inf),
     "link[0].length = -1": lambda: pc.Scene(links=[pc.Link(mass=1.0, length=-1.0, center=0.5)]),
     "effect.push({kind: 'joint_stop', joint: 1, range: [1, 0.5], restitution: 0.5})": (
@@ -205,7 +196,7 @@ IMPOSSIBLE: dict[str, Callable[[], object]] = {
 
 
 @pytest.mark.parametrize("change", IMPOSSIBLE)
-def test_an_impossible_parameter_is_refused_as_python_refuses_it(page: Any, change: str) -> None:
+def test_an_impossible_parameter_is_refused_as_python_refuses_it(page, change):
     with pytest.raises(ValueError, match=r"\w") as refused:
         IMPOSSIBLE[change]()
     page.do(f"pendcorePage.given.{change}; pendcorePage.changed()")
@@ -214,7 +205,7 @@ def test_an_impossible_parameter_is_refused_as_python_refuses_it(page: Any, chan
     assert told.split(": ", 1)[-1].split(": ")[-1] == str(refused.value).split(": ")[-1]
 
 
-def test_methods_and_tolerances_are_chosen_in_the_page(page: Any, sol: pc.Solution) -> None:
+def test_methods_and_tolerances_are_chosen_in_the_page(page, sol):
     page.click("tab-accuracy")
     page.enter("#method select", "dop853")
     page.enter("#method input", "11", "input")
@@ -222,19 +213,17 @@ def test_methods_and_tolerances_are_chosen_in_the_page(page: Any, sol: pc.Soluti
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
 
 
-def drawn(page: Any) -> list[dict[str, Any]]:
+def drawn(page):
     """Return the curves of the chart whose quantities are chosen."""
-    return page.ask(  # type: ignore[no-any-return]
-        "pendcorePage.curves.chosen.curves.map(({ name, x, y }) => ({ name, x, y }))"
-    )
+    return page.ask("pendcorePage.curves.chosen.curves.map(({ name, x, y }) => ({ name, x, y }))")
 
 
-def choose(page: Any, menu: str, label: str) -> None:
+def choose(page, menu, label):
     page.enter(f"#{menu}", label)
     assert page.ask(f"document.getElementById('{menu}').value") == label
 
 
-def test_any_quantity_is_drawn_over_any_other(page: Any, sol: pc.Solution) -> None:
+def test_any_quantity_is_drawn_over_any_other(page, sol):
     phase = drawn(page)
     t = np.linspace(0, 8, len(phase[0]["x"]))
     states = sol(t)
@@ -257,7 +246,7 @@ def test_any_quantity_is_drawn_over_any_other(page: Any, sol: pc.Solution) -> No
     np.testing.assert_allclose(path["y"], tip[:, 1], atol=1e-10)
 
 
-def test_a_choice_survives_a_run_and_goes_with_its_link(page: Any) -> None:
+def test_a_choice_survives_a_run_and_goes_with_its_link(page):
     choose(page, "up", "qd 2 (rad/s)")
     page.do("pendcorePage.given.start.q[0] = 0.5; pendcorePage.changed()")
     assert page.ask("document.getElementById('up').value") == "qd 2 (rad/s)"
@@ -270,7 +259,7 @@ def test_a_choice_survives_a_run_and_goes_with_its_link(page: Any) -> None:
     assert page.ask("document.getElementById('across').value") == "kinetic energy (J)"
 
 
-def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
+def test_sliders_have_the_size_of_a_small_rig(opened):
     rig = pc.Scene(
         links=[pc.Link(mass=0.05, length=0.1)],
         effects=[
@@ -297,7 +286,7 @@ def test_sliders_have_the_size_of_a_small_rig(opened: Open) -> None:
     assert sliders["range"] == (-3.15, 3.15, 0.01)  # -pi/3 and three times as much: no odd digits
 
 
-def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
+def test_the_trace_of_a_fast_link_is_round(opened):
     page = opened(pc.simulate(pc.Scene.textbook(), q0=[0.3, 0.3], qd0=[0.0, 60.0], t_span=(0, 2)))
     page.do(
         "const { view } = pendcorePage; const draw = view.draw.bind(view);"
@@ -308,7 +297,7 @@ def test_the_trace_of_a_fast_link_is_round(opened: Open) -> None:
     assert steps.max() < 0.12  # m: a tenth of a turn in rad at 1 m, and what link 1 adds
 
 
-def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
+def test_what_does_not_change_is_drawn_too(opened):
     """Without gravity, the kinetic energy of one rod changes in its last bit alone."""
     free = pc.Scene(links=[pc.Link(mass=1, length=1)], gravity=0.0)
     page = opened(pc.simulate(free, q0=[0.3], qd0=[4.0], t_span=(0, 2)))
@@ -321,7 +310,7 @@ def test_what_does_not_change_is_drawn_too(opened: Open) -> None:
     assert page.complaints() == []
 
 
-def test_a_button_says_copied_for_a_while_and_then_its_name(page: Any) -> None:
+def test_a_button_says_copied_for_a_while_and_then_its_name(page):
     page.click("copy-toml")
     page.click("copy-toml")
     assert page.text("copy-toml") == "Copied"

@@ -6,7 +6,6 @@ import json
 import re
 import sys
 from html import unescape
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,13 +16,13 @@ from pendcore.page.html import core_for_browsers
 
 
 @pytest.fixture(scope="module")
-def sol() -> pc.Solution:
+def sol():
     effects = [pc.effects.ViscousJoint(joint=2, damping=0.05), pc.effects.Payload(mass=0.2)]
     scene = pc.Scene.textbook().replace(effects=effects)
     return pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 8), error=1e-6)
 
 
-def objects(sol: pc.Solution) -> dict[str, Any]:
+def objects(sol):
     return {
         "solution": sol,
         "scene": sol.scene,
@@ -33,7 +32,7 @@ def objects(sol: pc.Solution) -> dict[str, Any]:
     }
 
 
-def test_objects_are_shown_by_short_tables_that_are_whole_and_have_units(sol: pc.Solution) -> None:
+def test_objects_are_shown_by_short_tables_that_are_whole_and_have_units(sol):
     told = {name: one._repr_html_() for name, one in objects(sol).items()}
     for table in told.values():
         ElementTree.fromstring(f"<div>{table}</div>")  # every tag is closed
@@ -52,7 +51,7 @@ def test_objects_are_shown_by_short_tables_that_are_whole_and_have_units(sol: pc
         assert part in told[name]
 
 
-def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
+def test_the_drawing_is_the_chain_with_y_downwards(sol):
     long = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 60))
     assert len(long.t) > 450
     for run in (sol, long):
@@ -66,23 +65,21 @@ def test_the_drawing_is_the_chain_with_y_downwards(sol: pc.Solution) -> None:
         assert last - last[0] == pytest.approx(scale * (true - true[0]), abs=0.2)
 
 
-def test_what_is_not_finite_is_left_out_of_a_drawing() -> None:
+def test_what_is_not_finite_is_left_out_of_a_drawing():
     wild = np.array([[0.0, 0.0], [np.nan, np.inf], [1.0, 1.0]])
     told = drawing([np.array([[0.0, 0.0], [1.0, 1.0]])], wild)
     assert "nan" not in told
     assert "inf" not in told
 
 
-def test_a_scene_of_many_links_has_a_short_table() -> None:
+def test_a_scene_of_many_links_has_a_short_table():
     told = pc.Scene(links=[pc.Link(mass=1.0, length=0.1)] * 60)._repr_html_()
     assert "and 40 more" in told
     assert told.count("<tr>") < 25
 
 
 @pytest.mark.unsanitized
-def test_the_page_lives_in_a_frame(
-    sol: pc.Solution, browser: Any, tmp_path: Any, core: None
-) -> None:
+def test_the_page_lives_in_a_frame(sol, browser, tmp_path, core):
     shown = tmp_path / "notebook.html"
     shown.write_text(f"<!doctype html><body>{sol.page(height=700)._repr_html_()}</body>")
     assert unescape(shown.read_text()).count("<title>A pendulum</title>") == 1
@@ -95,7 +92,7 @@ def test_the_page_lives_in_a_frame(
         browser.switch_to.default_content()
 
 
-def waited(browser: Any, expression: str) -> Any:
+def waited(browser, expression):
     from selenium.webdriver.support.ui import WebDriverWait
 
     wait = WebDriverWait(browser, 20, 0.05)
@@ -103,9 +100,7 @@ def waited(browser: Any, expression: str) -> Any:
 
 
 @pytest.mark.unsanitized
-def test_the_widget_tells_python_what_its_reader_does(
-    sol: pc.Solution, browser: Any, tmp_path: Any, core: None
-) -> None:
+def test_the_widget_tells_python_what_its_reader_does(sol, browser, tmp_path, core):
     pytest.importorskip("anywidget")
     widget = sol.widget(height=640)
     assert (widget.case, widget.height) == (None, 640)
@@ -136,15 +131,13 @@ def test_the_widget_tells_python_what_its_reader_does(
     assert widget.case == {"effect": [{"range": [-np.inf, 1]}]}
 
 
-def test_a_widget_without_its_package_says_what_is_missing(
-    sol: pc.Solution, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_widget_without_its_package_says_what_is_missing(sol, monkeypatch):
     monkeypatch.setitem(sys.modules, "anywidget", None)
     with pytest.raises(ImportError, match=r"anywidget is missing \(pip: anywidget\)"):
         sol.widget()
 
 
-def test_the_core_for_browsers_is_small() -> None:
+def test_the_core_for_browsers_is_small():
     packed = core_for_browsers()
     if packed is None:
         pytest.skip("`make page` builds the core for browsers and installs it")

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 from urllib.parse import quote
 
 import numpy as np
@@ -15,19 +12,18 @@ import pytest
 from browser_cases import CASES, START, STARTS, scene_in_python
 from pendcore.page import html
 
-Open = Callable[..., Any]
 pytestmark = [pytest.mark.unsanitized, pytest.mark.usefixtures("core")]
 MOST_BYTES = 900_000
 
 
-def test_a_page_is_one_small_file_that_names_no_other(sol: pc.Solution, tmp_path: Path) -> None:
+def test_a_page_is_one_small_file_that_names_no_other(sol, tmp_path):
     page = sol.to_html(tmp_path / "run.html", title="A <swing> & more").read_text()
     assert len(page.encode()) < MOST_BYTES
     assert "<title>A &lt;swing&gt; &amp; more</title>" in page
     assert not re.search(r"(src|href)=|https?://|@import|url\(", page)
 
 
-def test_it_opens_from_disk_and_asks_for_nothing(page: Any, browser: Any) -> None:
+def test_it_opens_from_disk_and_asks_for_nothing(page, browser):
     page.wait("pendcorePage.validUntil !== null")
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
@@ -41,7 +37,7 @@ def test_it_opens_from_disk_and_asks_for_nothing(page: Any, browser: Any) -> Non
 
 @pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", CASES)
-def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) -> None:
+def test_the_core_in_the_page_has_the_bits_of_python(name, opened):
     effects, options = CASES[name]
     start = STARTS.get(name, START)
     run = pc.simulate(
@@ -55,9 +51,7 @@ def test_the_core_in_the_page_has_the_bits_of_python(name: str, opened: Open) ->
     assert np.array_equal(states, run([1.7, 3.9]).T)
 
 
-def test_a_hash_that_is_not_pythons_is_told(
-    sol: pc.Solution, opened: Open, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_hash_that_is_not_pythons_is_told(sol, opened, monkeypatch):
     plain = html._plain_case
     monkeypatch.setattr(html, "_plain_case", lambda *_: {**plain(*_), "gravity": 9.8})
     told = opened(sol).text("bits")
@@ -65,21 +59,19 @@ def test_a_hash_that_is_not_pythons_is_told(
     assert told.endswith(f"Python's {sol._run.fingerprint}")
 
 
-def test_what_is_kept_at_times_has_the_bits_of_python_too(sol: pc.Solution, opened: Open) -> None:
+def test_what_is_kept_at_times_has_the_bits_of_python_too(sol, opened):
     run = pc.simulate(sol.scene, q0=0.5, t_span=(0, 5), t_eval=np.linspace(0, 5, 11))
     assert opened(run).text("bits").endswith(f"= {run._run.fingerprint}")
 
 
-def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
-    page: Any, sol: pc.Solution, opened: Open, tmp_path: Path
-) -> None:
+def test_the_case_is_copied_as_toml_as_python_and_as_a_link(page, sol, opened, tmp_path):
     page.click("tab-setup")
     page.do("pendcorePage.given.gravity = 3.7; pendcorePage.changed()")
     (tmp_path / "case.toml").write_text(page.copied("copy-toml"))
     again = pc.read_case(tmp_path / "case.toml").simulate()
     assert again._run.fingerprint == page.ask("pendcorePage.hash")
     assert again.scene.gravity == 3.7
-    made: dict[str, Any] = {}
+    made = {}
     exec(page.copied("copy-python"), made)
     assert made["sol"]._run.fingerprint == again._run.fingerprint
     link = page.copied("copy-link")
@@ -87,9 +79,7 @@ def test_the_case_is_copied_as_toml_as_python_and_as_a_link(
     assert other.ask("pendcorePage.hash") == again._run.fingerprint
 
 
-def test_an_address_that_is_refused_shows_the_run_of_the_page(
-    sol: pc.Solution, opened: Open
-) -> None:
+def test_an_address_that_is_refused_shows_the_run_of_the_page(sol, opened):
     case = opened(sol).ask("structuredClone(pendcorePage.given)")
     case["link"][0]["mass"] = -1.0
     page = opened(sol, "#case=" + quote(json.dumps(case)))
@@ -110,7 +100,7 @@ def test_an_address_that_is_refused_shows_the_run_of_the_page(
     assert page.text("bits").startswith("the bits of Python")
 
 
-def test_another_address_in_the_same_page_is_followed(page: Any) -> None:
+def test_another_address_in_the_same_page_is_followed(page):
     case = page.ask("structuredClone(pendcorePage.given)")
     case["gravity"] = 1.62
     page.do(f"location.hash = 'case=' + encodeURIComponent({json.dumps(json.dumps(case))})")
@@ -120,7 +110,7 @@ def test_another_address_in_the_same_page_is_followed(page: Any) -> None:
     page.wait("location.hash.includes('dop853')")
 
 
-def test_what_the_worker_runs_is_freed(page: Any) -> None:
+def test_what_the_worker_runs_is_freed(page):
     """A thousand runs take no more memory than a few, here as in the worker."""
     page.do(
         "window.bytes = () => pendcorePage.core.exports.memory.buffer.byteLength;"
@@ -130,7 +120,7 @@ def test_what_the_worker_runs_is_freed(page: Any) -> None:
     assert page.ask("bytes() - few") <= 2**20
 
 
-def test_a_run_with_events_has_a_hash_of_its_own(sol: pc.Solution, opened: Open) -> None:
+def test_a_run_with_events_has_a_hash_of_its_own(sol, opened):
     """The page knows no events, and does not claim their bits."""
     down = pc.events.LinkAngle(1, np.pi / 2)
     run = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), events=[down])
@@ -139,7 +129,7 @@ def test_a_run_with_events_has_a_hash_of_its_own(sol: pc.Solution, opened: Open)
     assert page.ask("pendcorePage.hash") == sol._run.fingerprint
 
 
-def test_a_backward_run_is_trusted_backward(opened: Open) -> None:
+def test_a_backward_run_is_trusted_backward(opened):
     run = pc.simulate(pc.Scene.textbook(), q0=0.8, t_span=(5, 0))
     page = opened(run)
     page.wait("pendcorePage.validUntil !== null")
@@ -147,7 +137,7 @@ def test_a_backward_run_is_trusted_backward(opened: Open) -> None:
     assert page.text("trust") == "Right to 0.1 rad to its end."
 
 
-def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> None:
+def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened):
     feeds = pc.effects.ViscousJoint(joint=2, damping=0.0, damping3=-50.0)
     with pytest.warns(pc.PendcoreWarning, match="feeds energy"):
         wild = pc.Scene.textbook().replace(effects=[feeds])
@@ -164,7 +154,7 @@ def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened: Open) -> Non
     assert page.text("bits").startswith("the bits of Python")
 
 
-def test_it_is_pale_past_the_time_until_which_it_is_right(opened: Open) -> None:
+def test_it_is_pale_past_the_time_until_which_it_is_right(opened):
     chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
     page = opened(chaotic)
     page.wait("pendcorePage.validUntil !== null")
@@ -172,13 +162,13 @@ def test_it_is_pale_past_the_time_until_which_it_is_right(opened: Open) -> None:
     assert "pale after that" in page.text("trust")
 
 
-def test_the_ghost_starts_a_billionth_of_a_radian_away(page: Any) -> None:
+def test_the_ghost_starts_a_billionth_of_a_radian_away(page):
     page.do("document.getElementById('ghost').click()")
     away = np.array(page.ask("[...pendcorePage.ghost.state(0)]")) - [0.8, 1.0, 0, 0]
     assert away == pytest.approx([0, 1e-9, 0, 0], abs=1e-15)
 
 
-def test_neighbours_are_the_runs_beside_this_one(page: Any, sol: pc.Solution) -> None:
+def test_neighbours_are_the_runs_beside_this_one(page, sol):
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
     found = page.ask("[...pendcorePage.neighbours.angles.slice(60 * 2000, 60 * 2000 + 8)]")
@@ -187,14 +177,14 @@ def test_neighbours_are_the_runs_beside_this_one(page: Any, sol: pc.Solution) ->
     assert found == pytest.approx(beside.q.ravel(), abs=1e-6)
 
 
-def test_the_ledger_is_drawn_beside_the_energies(page: Any, sol: pc.Solution) -> None:
+def test_the_ledger_is_drawn_beside_the_energies(page, sol):
     names = page.ask("pendcorePage.curves.energy.curves.map((one) => one.name)")
     assert names == ["kinetic", "potential", "total", "viscous (lost)"]
     total, lost = page.ask("[2, 3].map((k) => pendcorePage.curves.energy.curves[k].y.at(-1))")
     assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
 
 
-def test_what_accuracy_costs_is_measured(page: Any) -> None:
+def test_what_accuracy_costs_is_measured(page):
     page.click("tab-accuracy")
     page.click("measure")
     page.wait("pendcorePage.measured !== undefined", 60)
@@ -206,10 +196,8 @@ def test_what_accuracy_costs_is_measured(page: Any) -> None:
     assert {one["method"] for one in points} >= {"dopri5", "dop853", "taylor", "radau5"}
 
 
-def test_whoever_wants_less_motion_gets_a_page_that_waits(
-    sol: pc.Solution, opened: Open, browser: Any
-) -> None:
-    def emulate(*features: dict[str, str]) -> None:
+def test_whoever_wants_less_motion_gets_a_page_that_waits(sol, opened, browser):
+    def emulate(*features):
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [*features]})
 
     emulate({"name": "prefers-reduced-motion", "value": "reduce"})
@@ -221,7 +209,7 @@ def test_whoever_wants_less_motion_gets_a_page_that_waits(
     assert opened(sol).text("play") == "Pause"
 
 
-def test_the_phase_portrait_of_a_fast_link_has_no_corners(opened: Open) -> None:
+def test_the_phase_portrait_of_a_fast_link_has_no_corners(opened):
     page = opened(pc.simulate(pc.Scene.textbook(), q0=[0.3, 0.3], qd0=[0.0, 48.0], t_span=(0, 10)))
     x = np.array(page.ask("pendcorePage.curves.chosen.curves[1].x"))
     assert np.abs(np.diff(x)).max() < 0.12  # rad

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import pendcore as pc
 import pytest
 from pendcore.page import html
 
-Open = Callable[..., Any]
 pytestmark = pytest.mark.unsanitized
 
 
 @pytest.fixture
-def sol() -> pc.Solution:
+def sol():
     return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 8))
 
 
-def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
-    sol: pc.Solution, opened: Open, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, opened, monkeypatch):
     monkeypatch.setattr(html, "core_for_browsers", lambda: None)
     page = opened(sol)
     assert "no core for browsers (`make page` in a clone builds it" in page.text("about")
@@ -35,7 +29,7 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(
     assert "Right to 0.1 rad to its end." in page.text("trust")
 
 
-def test_functions_of_ones_own_are_played_back(opened: Open) -> None:
+def test_functions_of_ones_own_are_played_back(opened):
     brake = pc.effects.User(function=lambda t, q, qd: [-0.1 * qd[0], 0.0])
     run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), q0=0.5, t_span=(0, 4))
     page = opened(run)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from fractions import Fraction
 from functools import partial
 
@@ -225,6 +224,9 @@ VALUE_ERRORS = [
     ("link 1: mass = 0.0: must be finite and > 0",
      lambda: pc.Scene(links=[pc.Link(mass=0, length=1)])),
     ("q[0] = nan: must be finite (rad)", lambda: pc.angles_to_vertical([nan])),
+    *[(f'zero = {zero!r}: must be "hanging" or "upright"', partial(turn, 0.0, zero=zero))
+      for turn in (pc.angles_from_vertical, pc.angles_to_vertical)
+      for zero in ("up", "Upright", "", None, 1, ["upright"])],
     ("q: shape (3,): must be (2,)", lambda: BOOK.explain(q=[1, 2, 3])),
     ("t = nan: must be finite", lambda: BOOK.explain(t=nan)),
     *[(f"{name}: has 10000000 numbers: must have", partial(simulate, **{name: np.ones(10**7)}))
@@ -273,15 +275,3 @@ OTHERS = [(*row, TypeError) for row in TYPE_ERRORS] + [(*row, ValueError) for ro
 @pytest.mark.parametrize(("words", "call", "error"), OTHERS, ids=[words for words, *_ in OTHERS])
 def test_what_else_is_given_wrongly_is_told_by_name(words, call, error):
     refused(call, words, error)
-
-
-def test_more_inertia_than_the_mass_center_allows_is_warned_of_and_what_could_be_is_not():
-    with pytest.warns(pc.PendcoreWarning, match=r"^link 2: inertia = 0\.26: .* = 0\.24 kg"):
-        rod_and(inertia=0.26, center=0.4)
-    with pytest.warns(pc.PendcoreWarning, match=r"^link 2: inertia = 0\.26: .* = 0\.25 kg"):
-        rod_and(inertia=0.26)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        rod_and(inertia=0.25)
-        rod_and(mass=1e-3, length=10, center=0.1, inertia=0)
-        pc.Scene(links=[ROD, pc.Link.point_mass(mass=1, length=0.1)])

@@ -41,7 +41,7 @@ DRAWN = {
     "run --csv -o o": "angles.png",
     "map case.toml -o o": "map.png",
     f"cost case.toml -o o {QUICK}": "cost.png",
-    "show case.toml -o o/film.gif --fps 2": "film.gif",
+    "show case.toml -o o/film.gif --fps 2 --speed 5": "film.gif",
 }
 
 

@@ -61,7 +61,7 @@ def test_what_is_whole_is_read_and_used():
         read_case(text)
 
 
-TIMES = {"case": 200, "archive": 200, "state": 400, "scene": 200, "store": 100}
+TIMES = {"case": 200, "archive": 100, "state": 400, "scene": 200, "store": 40}
 
 
 @pytest.mark.parametrize("reader", READERS)

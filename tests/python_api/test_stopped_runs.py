@@ -142,15 +142,6 @@ def test_an_attempt_that_is_given_up_at_any_place_leaves_no_trace(case):
     assert sol.stats == whole.stats or case == "sliding"
 
 
-@pytest.mark.parametrize("step", [0.3, 50.0])
-def test_a_fixed_step_whose_equations_are_not_solved_says_so(step):
-    how = {"method": "radau5", "step": step, "on_failure": "ignore"}
-    sol = pc.simulate(BOOK, (0, 100), (2.0, 2.5), (0.0, 8.0), **how)
-    assert (sol.status, sol.success) == ("not_converged", False)
-    assert "use a smaller step" in sol.message
-    assert np.isfinite(sol.y).all()
-
-
 def test_a_law_that_gives_no_number_is_not_called_an_equation_without_solution():
     scene = under(lambda t, q, qd: np.full(2, np.nan if t > 0.5 else 0.0), links=2)
     how = {"method": "radau5", "step": 0.01, "on_failure": "ignore"}
@@ -278,15 +269,6 @@ def test_a_wrong_on_failure_is_refused_before_anything_is_run(wrong):
     for call in calls:
         with pytest.raises(ValueError, match=f"^{words}$"):
             call()
-
-
-def test_of_a_run_that_kept_no_time_the_way_that_it_went_is_drawn():
-    how = SWING | {"max_steps": 3, "on_failure": "ignore"}
-    none = pc.simulate(BOOK, **how, t_eval=[4.0], store="times")
-    assert len(none.t) == 0
-    line = none.plot(what="path")[0]
-    tip = pc.simulate(BOOK, **how).positions()[-1, -1]
-    np.testing.assert_allclose([line.get_xdata()[-1], line.get_ydata()[-1]], tip, atol=1e-12)
 
 
 def test_what_is_run_on_the_way_to_an_answer_says_nothing():
