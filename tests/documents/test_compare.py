@@ -16,10 +16,9 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 import chains
 import effects
 from cases import one_step, read_case
-from chain_scenes import ChainScene, chain_scene
 from contenders.contender import Outcome, PythonRun, Unsupported, fixed_steps, tolerances
-from contenders.forward_dynamics import described
 from equal_error import SIDES, bar, compare, envelope, time_at
+from forward_dynamics import ChainScene, chain_scene
 from measure import achieved, interleave
 from trajectory_error import end_error, energy_error, position_error
 
@@ -223,9 +222,14 @@ def test_scenes_of_chains_are_written_exactly_and_have_a_power_of_two_of_states(
     states = scene.q.shape[0]
     assert states >= 2
     assert states & (states - 1) == 0
-    effect, *numbers = described(scene).split()
-    numbers_of = [*scene.masses, *scene.lengths, scene.gravity, *scene.q.flat, *scene.qd.flat]
-    assert (effect, *map(float, numbers)) == ("viscous_joint", n, states, *numbers_of)
+    words = scene.described().split()
+    assert words[:3] == ["word", "effect", "viscous_joint"]
+    for name in ("masses", "lengths", "gravity", "q", "qd"):
+        numbers = np.ravel(getattr(scene, name))
+        begin = words.index(name) + 1
+        written = [float(word) for word in words[begin : begin + 1 + numbers.size]]
+        assert written == [numbers.size, *numbers]
+    assert words[-8:] == ["effect", "viscous_joint", "joint", "1", "2.0", "damping", "1", "0.1"]
 
 
 class Side:

@@ -15,10 +15,10 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 import contenders
 import stiff
 from cases import Array, Case, read_case
-from contenders import compiled
 from contenders.contender import Contender, Unsupported
 from contenders.equations import fill, jacobian, rates
 from contenders.pendcore_python import scene_of
+from contenders.programs import end_conversations
 from trajectory_error import position_error
 
 BARE, DAMPED, THREE = (read_case(name) for name in ("textbook", "damped_textbook", "three_links"))
@@ -94,7 +94,7 @@ def found() -> Iterator[dict[str, Contender]]:
     entrants, _ = contenders.installed()
     assert any(who.name == "pendcore_dopri5" for who in entrants)
     yield {who.name: who for who in entrants}
-    compiled.end_conversations()
+    end_conversations()
 
 
 @pytest.mark.outside_build

@@ -1,7 +1,7 @@
 """What a contender is: it prepares runs of a case at a setting, to be timed and examined.
 
 To add one, write a file beside this one with a list `CONTENDERS`, and add its name to the list in
-`__init__.py`. A C++ contender is a .cpp file and a line in `compiled.py`.
+`__init__.py`. A C++ contender is a .cpp file and a line in `programs.py`.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import gc
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
-from cases import Array, Case
+from cases import Array
 
 Answer = TypeVar("Answer")
 COMPILED, COMPILED_V3, PYTHON = "compiled", "compiled_v3", "python"
@@ -63,9 +63,9 @@ def fixed_steps(longest: float, shortest: float, per_decade: int) -> list[float]
     return steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Contender:
-    """A solver: `prepare` makes its run of a case, or raises Unsupported if it cannot solve that.
+    """`prepare` makes a run of a case at a setting, or raises Unsupported if it cannot solve that.
 
     `about` gives version and settings. `sides` are the sides on which the contender takes part: its
     time is that of compiled code, or it includes a call from Python. `settings` are tolerances or
@@ -75,7 +75,7 @@ class Contender:
     name: str
     label: str
     about: str
-    prepare: Callable[[Case, float], Run]
+    prepare: Callable[..., Any]
     sides: tuple[str, ...] = (PYTHON,)
     ours: bool = False
     setting: str = "tolerance"

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from math import cos, pi, sin
 from typing import Any
 
 import mpmath
 import numpy as np
+from cases import Array
 from mpmath import ellipk, mp, mpf, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene
-from hard_cases.rods import Array, G, two_rods
+from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene, crossing
+from hard_cases.rods import G, two_rods
 
 
 class Drift(Scene):
@@ -23,7 +24,6 @@ class Drift(Scene):
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 2000.0)
     times = np.linspace(0, span[1], 201)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
-    system = ("textbook", ())
     settings = {"pendcore": {"t_eval": times}, "mujoco": {"every": times[1]}}  # noqa: RUF012
 
     def energy(self, states: Any) -> Array:
@@ -98,10 +98,6 @@ class ShakenPivot(Scene):
         shaking = fx.Sinusoid(amplitude=self.eps, angular_frequency=self.w, phase=pi / 2)
         return [fx.DrivenPivot(y=shaking)]
 
-    @property
-    def system(self) -> tuple[str, Sequence[float]]:  # type: ignore[override]
-        return "shaken", (G, self.eps, self.w)
-
     def rates(self, t: float, y: Array) -> tuple[float, float]:
         return y[1], 1.5 * (G - self.eps * self.w**2 * cos(self.w * t)) * sin(y[0])
 
@@ -119,7 +115,6 @@ class Upright(Scene):
     links, mass, gravity, hanging = 2, 1.0, G, False
     start, speeds, span = (UPRIGHT + 1e-9,) * 2, (0.0, 0.0), (0.0, 6.0)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
-    system = ("textbook", ())
     settings = {"scipy": {"dense_output": True}}  # noqa: RUF012
 
     @cache  # noqa: B019
@@ -174,7 +169,15 @@ class Upright(Scene):
         return self.judge(float(motion.t[k] - dt * (off[k] - 1) / (off[k] - off[k - 1])))
 
     def odeint(self, **how: Any) -> Outcome:
-        return self.judge(self.task(**how).ask("fallen", UPRIGHT, self.span[1])["t"][0])
+        steps = self.steps_of_odeint(**how)
+
+        def off(y: Any) -> float:
+            return float(np.abs(np.array(y[:2]) - UPRIGHT).max()) - 1
+
+        low, high = steps.step()
+        while off(steps.at(high)) < 0 and high < self.span[1]:
+            low, high = steps.step()
+        return self.judge(crossing(steps, low, high, off))
 
 
 class Separatrix(Scene):
@@ -183,7 +186,6 @@ class Separatrix(Scene):
     mass, gravity = 1.0, G
     amplitude = float(2 * np.arcsin(0.999999))
     zero, sign, start = HANGING, -1.0, (amplitude,)
-    system = ("pendulum", [G])
     settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
     with mp.workdps(30):
         modulus = mpmath.sin(mpf(amplitude) / 2)
