@@ -4,7 +4,7 @@ Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (
 n links), `effects` (what each adds) and `ensembles` (many runs at once) are timed in turns, in one
 run each; `hard_cases` asks who is right. Each writes a record into docs/records and a page with
 figures; README.md in docs/comparison covers all solves.
-`make compare` and `make hard-cases` build what is needed and call this; by hand:
+`make compare` builds what is needed and calls this, with ONLY=... for some of them; by hand:
 
     python bench/compare/compare.py                        all that is timed, twenty minutes
     python bench/compare/compare.py --only chains stiff    some of them

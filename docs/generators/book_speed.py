@@ -1,6 +1,6 @@
 """The textbook's claim of speed, measured: inline function, function file, NumPy, compiled core.
 
-    make book-speed
+    make write PAGE=book_speed
 
 All take turns in one run. It writes docs/records/book_speed.json, the tables of
 docs/background/book_speed.md and the figure docs/figures/book_speed.png.

@@ -1,6 +1,6 @@
 """The method and tolerances that `simulate` takes by default, and the measurements behind them.
 
-    make default-method
+    make write PAGE=default_method
 
 It writes two tables of docs/background/accuracy_cost.md, and docs/records/default_method.json:
 errors and times of the default at several tolerances on 200 random regular scenes, beside dopri5;

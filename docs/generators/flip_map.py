@@ -1,6 +1,6 @@
 """The flip map of the textbook's rods, which pixels of it are true, and a check in many digits.
 
-    make flip-map
+    make write PAGE=flip_map
 
 It runs what docs/background/flip_map.md tells of, and writes the numbers of that page,
 docs/records/flip_map.json and docs/figures/flip_map.png. The truth at some pixels comes from the

@@ -1,6 +1,6 @@
 """How long a chaotic run is right, how long it says that it is, and what one more digit is worth.
 
-    make horizon
+    make write PAGE=horizon
 
 It runs what docs/background/horizon.md tells of, and writes the tables of that page,
 docs/records/horizon.json and the figures docs/figures/horizon_*.png. The truth comes from the

@@ -1,6 +1,6 @@
 """What ten million steps do to the energy, with and without compensated steps.
 
-    make long
+    make write PAGE=long_runs
 
 It runs both, checks what docs/background/long_runs.md promises, and writes
 docs/records/long_runs.json, the figure docs/figures/long_runs.png and the tables of the page.

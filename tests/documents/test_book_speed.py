@@ -24,7 +24,7 @@ octave = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def kept() -> dict[str, Any]:
-    """Return the record that the last `make book-speed` wrote."""
+    """Return the record that the last `make write PAGE=book_speed` wrote."""
     return json.loads((DOCS / "records/book_speed.json").read_text())
 
 
