@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from math import inf
 from pathlib import Path
 
+from page_part import with_part
 from pendcore._run.options import OPTIONS, RunOption
 
 ROOT = Path(__file__).parents[2]
-BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
 HEAD = """\
 | key | unit | default | meaning |
 |---|---|---|---|
@@ -78,10 +78,9 @@ def _toml(value: object) -> str:
 def written() -> dict[Path, str]:
     """Return every file and its text."""
     page = ROOT / "docs/how_to/case_files.md"
-    before, rest = page.read_text().split(BEGIN)
     return {
         ROOT / "python/pendcore/_run/keywords.py": keywords(),
-        page: before + BEGIN + table() + END + rest.split(END)[1],
+        page: with_part(page.read_text(), "options", table()),
     }
 
 

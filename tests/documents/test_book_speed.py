@@ -15,6 +15,7 @@ import pytest
 DOCS = Path(__file__).parents[2] / "docs"
 sys.path.append(str(DOCS / "generators"))
 import book_speed  # noqa: E402
+from page_part import with_part  # noqa: E402
 
 octave = pytest.mark.skipif(
     not shutil.which("octave-cli"),
@@ -70,6 +71,5 @@ def test_numpy_s_module_is_the_core_s_right_hand_side() -> None:
 
 @pytest.mark.parametrize("name", book_speed.TABLES)
 def test_the_page_has_the_tables_of_the_record(name: str, kept: dict[str, Any]) -> None:
-    begin, end = book_speed.BEGIN.format(name), book_speed.END.format(name)
-    table = book_speed.TABLES[name](kept)
-    assert begin + table + end in (DOCS / "background/book_speed.md").read_text()
+    page = (DOCS / "background/book_speed.md").read_text()
+    assert with_part(page, f"book speed: {name}", book_speed.TABLES[name](kept)) == page

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from cases import Array
+from cases import Array, Case
 
 Answer = TypeVar("Answer")
 COMPILED, COMPILED_V3, PYTHON = "compiled", "compiled_v3", "python"
@@ -31,7 +31,12 @@ class Outcome:
     said: str = ""
 
 
-class Run(Protocol):
+class Timed(Protocol):
+    def burst(self, seconds: float) -> list[float]:
+        """Call for about that long and list each call's seconds; a first of several warms up."""
+
+
+class Run(Timed, Protocol):
     """A case at a setting; everything that can be built beforehand is built.
 
     `compile_seconds` is how long a user waits for compilation in each process; None if nothing is
@@ -40,9 +45,6 @@ class Run(Protocol):
 
     @property
     def compile_seconds(self) -> float | None: ...
-
-    def burst(self, seconds: float) -> list[float]:
-        """Call for about that long and list each call's seconds; a first of several warms up."""
 
     def outcome(self) -> Outcome:
         """Solve and return the result; raise RuntimeError with a reason if there are no states."""
@@ -91,6 +93,16 @@ def compiled(build: Callable[[], Answer]) -> tuple[Answer, float]:
     """Build, and measure the seconds that this takes."""
     begin = time.perf_counter()
     return build(), time.perf_counter() - begin
+
+
+known: dict[tuple[str, str], tuple[Any, float]] = {}
+
+
+def once(kind: str, case: Case, build: Callable[[], Any]) -> tuple[Any, float]:
+    """Compile what does not depend on the tolerance once for a case."""
+    if (kind, case.name) not in known:
+        known[kind, case.name] = compiled(build)
+    return known[kind, case.name]
 
 
 @dataclass(frozen=True, slots=True)

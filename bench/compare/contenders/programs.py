@@ -107,6 +107,15 @@ class Conversation:
             )
         return answer
 
+    def close(self) -> None:
+        """End the program, which happens by itself when its input ends."""
+        conversations.remove(self)
+        try:
+            self.process.communicate(timeout=LONGEST_ANSWER)
+        except BaseException:
+            self.process.kill()
+            raise
+
     def contenders(self, prepare: Callable[..., Any]) -> list[Contender]:
         """List the program's contenders; `prepare` takes the conversation and the name first."""
         found = []
@@ -124,12 +133,7 @@ conversations: list[Conversation] = []
 def end_conversations() -> None:
     """End all programs; their contenders no longer answer."""
     while conversations:
-        process = conversations.pop().process
-        try:
-            process.communicate(timeout=LONGEST_ANSWER)
-        except BaseException:
-            process.kill()
-            raise
+        conversations[-1].close()
 
 
 @dataclass(frozen=True, slots=True)

@@ -121,15 +121,7 @@ class Upright(Scene):
     def fall_time(self) -> float:
         """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double start."""
         with mp.workdps(25):
-            g, cosine, sine = mpf(G), mpmath.cos, mpmath.sin
-
-            def rates(_: Any, y: Any) -> list[Any]:
-                a12, h = cosine(y[0] - y[1]) / 2, sine(y[0] - y[1]) / 2
-                r1 = 3 * g * cosine(y[0]) / 2 - h * y[3] ** 2
-                r2 = g * cosine(y[1]) / 2 + h * y[2] ** 2
-                det = mpf(4) / 9 - a12**2
-                return [y[2], y[3], (r1 / 3 - a12 * r2) / det, (4 * r2 / 3 - a12 * r1) / det]
-
+            rates = two_rods(of=mpmath, one=mpf(1))
             motion = mpmath.odefun(rates, 0, [*map(mpf, self.start), 0, 0])
 
             def off(t: Any) -> Any:
