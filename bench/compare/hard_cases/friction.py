@@ -197,7 +197,7 @@ class TwoJoints(Scene):
         rubs = [fx.DryJointFriction(joint=j, coulomb=self.friction[j - 1]) for j in (1, 2)]
         return [fx.Motor(joint=1, sinusoid=hum), *rubs]
 
-    def smoothed(self, t: float, w1: float, w2: float) -> tuple[float, float]:
+    def torques(self, t: float, w1: float, w2: float) -> tuple[float, float]:
         """Return the torques in the joints; the sign of friction is smoothed over 1e-3 rad/s."""
         first, second = self.friction
         driven = self.amplitude * math.sin(self.frequency * t)
@@ -205,7 +205,7 @@ class TwoJoints(Scene):
 
     @cached_property
     def rates(self) -> Any:  # type: ignore[override]
-        return two_rods(torques=self.smoothed)
+        return two_rods(torques=self.torques)
 
     @cache  # noqa: B019
     def solved(self) -> tuple[Array, list[float], list[tuple[int, ...]]]:
