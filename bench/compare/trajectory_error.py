@@ -47,15 +47,20 @@ def coupling(masses: Array, lengths: Array) -> tuple[Array, Array]:
     return matrix, moments
 
 
+def energy(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> Array:
+    """Return the energy of uniform rods at each time, J, (n_t,)."""
+    inertia, moment = coupling(masses, lengths)
+    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
+    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
+    return cast(Array, kinetic - gravity * (np.sin(q) @ moment))
+
+
 def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:
     """Measure the largest drift of the energy of uniform rods from its start.
 
     The drift is a share of the energy that the whole mass gains by falling the whole length, or,
     without gravity, of the kinetic energy at the start.
     """
-    inertia, moment = coupling(masses, lengths)
-    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
-    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
-    total = kinetic - gravity * (np.sin(q) @ moment)
-    scale = gravity * masses.sum() * lengths.sum() if gravity else kinetic[0]
+    total = energy(q, qd, masses, lengths, gravity)
+    scale = gravity * masses.sum() * lengths.sum() if gravity else total[0]
     return float(np.abs(total - total[0]).max() / scale)

@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 from cases import Array
 from mpmath import ellipk, mp, mpf, sqrt
+from trajectory_error import energy
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene, crossing
@@ -26,17 +27,11 @@ class Drift(Scene):
     rates = staticmethod(two_rods())  # type: ignore[assignment]
     settings = {"pendcore": {"t_eval": times}, "mujoco": {"every": times[1]}}  # noqa: RUF012
 
-    def energy(self, states: Any) -> Array:
-        """Return the energy, J, in states (..., 4)."""
-        q1, q2, w1, w2 = np.moveaxis(np.asarray(states), -1, 0)
-        kinetic = 2 / 3 * w1**2 + w2**2 / 6 + np.cos(q1 - q2) * w1 * w2 / 2
-        return np.asarray(kinetic - G * (1.5 * np.sin(q1) + 0.5 * np.sin(q2)))
-
     def judge(self, states: Any, words: str) -> Outcome:
         """Judge the largest drift at the times, as a share of the energy at the start."""
-        at_start = self.energy((*self.start, *self.speeds))
-        error = float(np.abs(self.energy(states) / at_start - 1).max())
-        return Outcome(error=error, said=words)
+        q, qd = np.split(np.vstack([(*self.start, *self.speeds), states]), 2, axis=1)
+        found = energy(q, qd, np.ones(2), np.ones(2), G)
+        return Outcome(error=float(np.abs(found / found[0] - 1).max()), said=words)
 
     def judged(self, motion: Motion) -> Outcome:
         return self.judge(motion.y, motion.words)

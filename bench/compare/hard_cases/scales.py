@@ -10,6 +10,7 @@ import numpy as np
 from cases import Array
 from hybrid_chain import extrapolated_step
 from mpmath import mp, mpf, sqrt
+from trajectory_error import coupling
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene
@@ -166,10 +167,8 @@ class LetGo(KnownEnd):
     steps = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order makes it 1e-10 m
 
     def __init__(self) -> None:
-        n, each = self.links, self.mass * self.length
-        self.moments = each * (n - 0.5 - np.arange(n))
-        self.coupled = self.length * np.minimum.outer(self.moments, self.moments)
-        np.fill_diagonal(self.coupled, self.length * (self.moments - each / 6))
+        one = np.ones(self.links)
+        self.coupled, self.moments = coupling(self.mass * one, self.length * one)
 
     def positions(self, q: Array) -> Array:
         """Return the position of the tip."""
