@@ -21,9 +21,8 @@ BUILT := build/installed
 SOURCES := pyproject.toml CMakeLists.txt $(shell find cpp python ! -path '*__pycache__*')
 
 .DEFAULT_GOAL := help
-.PHONY: demo test test-all compare hard-cases bench against build-bench lint tidy sanitize sanitize-few \
-    sanitized references threads lowest long horizon asked-errors default-method book-speed fuzz fuzz-readers \
-    test-error mutants elsewhere wasm page wheel site core clean help flip-map film
+.PHONY: demo test test-all references compare bench against build-bench lint tidy sanitize sanitized-addresses \
+    sanitized-threads elsewhere wasm page wheel site lowest write known-page campaign known-campaign core clean help
 
 demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure and summary are
 	pendcore run -o out/textbook
@@ -45,10 +44,12 @@ test-all: lint tidy build-bench page $(DONE)/test-requirements $(DONE)/fuzz-requ
 	@sh setup/debian_packages.sh octave pandoc ffmpeg chromium
 	$(CPP_TESTS)
 	$(PYTEST) --full
-	$(MAKE) sanitize threads elsewhere wheel site fuzz-readers fuzz CASES=20000 CONTRACTED=--contracted
+	$(MAKE) sanitize elsewhere wheel site CONTRACTED=--contracted
+	$(MAKE) campaign OF=readers
+	$(MAKE) campaign OF=fuzz CASES=20000
 
-# Where these are missing, tests that compare with them are skipped.
-references: $(DONE)/error-requirements $(DONE)/bench-requirements  ## installs what tests compare pendcore with
+# What tests compare pendcore with. Where these are missing, such tests are skipped.
+references: $(DONE)/error-requirements $(DONE)/bench-requirements
 
 define CPP_TESTS
 cmake -B $(BUILT) -DPENDCORE_TESTS=ON
@@ -56,11 +57,8 @@ cmake --build $(BUILT) --target tests/cpp/all
 ctest --test-dir $(BUILT) --output-on-failure --no-tests=error
 endef
 
-compare: build-bench  ## accuracy and speed beside other solvers
-	python bench/compare/compare.py
-
-hard-cases: build-bench  ## what breaks simulators, here and in other programs
-	python bench/compare/compare.py --only hard_cases
+compare: build-bench  ## accuracy and speed beside other solvers; ONLY="stiff chains" a part, ONLY=hard_cases what breaks simulators
+	python bench/compare/compare.py $(if $(ONLY),--only $(ONLY))
 
 bench: build-bench  ## what the parts of the core cost, in nanoseconds
 	$(BUILT)/bench/pendcore_bench
@@ -90,13 +88,11 @@ tidy: $(DONE)/build-requirements $(DONE)/lint-requirements  ## clang-tidy over t
 SANITIZED := $(CURDIR)/build/sanitizer/site
 PRELOAD = $(shell g++ -print-file-name=libasan.so) $(shell g++ -print-file-name=libstdc++.so)
 
-sanitize: sanitized  ## the cases of make test under sanitizers
+sanitize: sanitized-addresses sanitized-threads  ## the cases of make test, and threads, under sanitizers; SHARE=3 a few of these cases
 
-# One case of one Python test in three, and at least one test of every file.
-sanitize-few: SWEEP = --values 1 --share 3
-sanitize-few: sanitized  ## the C++ tests and a few hundred Python tests under sanitizers
-
-sanitized: $(DONE)/installed $(DONE)/test-requirements
+# With a share, one case of one Python test in so many, and at least one test of every file.
+SWEEP = $(if $(SHARE),--values 1 --share $(SHARE))
+sanitized-addresses: $(DONE)/installed $(DONE)/test-requirements
 	cmake --preset sanitizer -Dpybind11_DIR=$$(pybind11-config --cmakedir)
 	cmake --build --preset sanitizer
 	ctest --preset sanitizer
@@ -105,18 +101,26 @@ sanitized: $(DONE)/installed $(DONE)/test-requirements
 	PYTHONPATH=$(SANITIZED) LD_PRELOAD="$(PRELOAD)" ASAN_OPTIONS=detect_leaks=0 \
 	    $(PYTEST) $(SWEEP) -m "not outside_build and not unsanitized"
 
+# Threads that share a scene.
+sanitized-threads: $(DONE)/build-requirements
+	@sh setup/debian_packages.sh doctest
+	cmake --preset thread-sanitizer
+	cmake --build --preset thread-sanitizer
+	ctest --preset thread-sanitizer
+
 MACHINES ?= aarch64 riscv64 s390x wasm32 clang
 elsewhere: $(DONE)/installed $(DONE)/test-requirements  ## the same bits on other processors (MACHINES); PAGE=docs/background/elsewhere.md writes the page
 	@sh setup/debian_packages.sh doctest $(MACHINES)
 	python tests/elsewhere/elsewhere.py $(MACHINES) $(CONTRACTED) $(PAGE:%=--page %)
 	$(if $(filter wasm32,$(MACHINES)),PENDCORE_TEST_JAVASCRIPT=1 $(PYTEST) --full tests/elsewhere)
 
-wasm: $(DONE)/build-requirements  ## the core for browsers: build/wasm/package, docs/how_to/webassembly.md
+# The core for browsers, in build/wasm/package.
+wasm: $(DONE)/build-requirements
 	@sh setup/debian_packages.sh eigen wasm32
 	cmake -G Ninja -B build/wasm -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
 	cmake --build build/wasm --target pendcore_wasm
 
-page: wasm $(DONE)/installed  ## the core for browsers, installed, so that pages hold it (sol.to_html)
+page: wasm $(DONE)/installed  ## the core for browsers: build/wasm/package, and installed, so that pages of runs hold it
 	$(MAKE) --silent core
 
 # The wheel is installed where nothing else of this project is, and shows there what it can do.
@@ -154,62 +158,64 @@ lowest: $(DONE)/venv  ## the lowest versions that pyproject.toml names: installe
 	$(PIP_INSTALL) --no-deps --no-build-isolation .
 	MPLBACKEND=Agg pytest -n auto --values 1 -W ignore::DeprecationWarning $(TRIED_WITH_LOWEST)
 
-threads: $(DONE)/build-requirements  ## threads that share a scene, under the thread sanitizer
-	@sh setup/debian_packages.sh doctest
-	cmake --preset thread-sanitizer
-	cmake --build --preset thread-sanitizer
-	ctest --preset thread-sanitizer
+# The programs that write tables and figures of pages, and what they need; most need what tests do.
+PAGES := long_runs horizon flip_map asked_errors default_method book_speed film
+NEEDED_BY_book_speed := bench
+NEEDED_BY_film := build
+write: known-page $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(PAGE)),test)-requirements  ## a page's figures anew: PAGE=long_runs|horizon|flip_map|asked_errors|default_method|book_speed|film
+	$(if $(filter book_speed,$(PAGE)),@sh setup/debian_packages.sh octave)
+	$(if $(filter asked_errors,$(PAGE)),python docs/generators/series_work.py)
+	MPLBACKEND=Agg python docs/generators/$(PAGE).py
 
-long: $(DONE)/installed $(DONE)/test-requirements  ## ten million steps: docs/background/long_runs.md, written anew
-	python docs/generators/long_runs.py
+known-page:
+	@$(if $(filter $(PAGES),$(PAGE)),,$(error make write PAGE=$(PAGE): PAGE is one of $(PAGES)))true
 
-horizon: $(DONE)/installed $(DONE)/test-requirements  ## how long runs are right: docs/background/horizon.md, written anew
-	python docs/generators/horizon.py
+# Random attacks, by the thousand.
+CAMPAIGNS := fuzz readers errors mutants
+NEEDED_BY_readers := fuzz
+NEEDED_BY_errors := error
+NEEDED_BY_mutants := mutant
+campaign: known-campaign $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(OF)),test)-requirements  ## random attacks: OF=fuzz|readers|errors|mutants
+	$(CAMPAIGN_$(OF))
 
-film: $(DONE)/installed  ## the README's film: docs/figures/swing.gif, drawn anew
-	MPLBACKEND=Agg python docs/generators/film.py
+known-campaign:
+	@$(if $(filter $(CAMPAIGNS),$(OF)),,$(error make campaign OF=$(OF): OF is one of $(CAMPAIGNS)))true
 
-flip-map: $(DONE)/installed $(DONE)/test-requirements  ## when rods turn over: docs/background/flip_map.md, written anew
-	python docs/generators/flip_map.py
-
-asked-errors: $(DONE)/installed $(DONE)/test-requirements  ## docs/background/accuracy_cost.md: what simulate(error=) keeps and costs
-	python docs/generators/series_work.py
-	python docs/generators/asked_errors.py
-
-default-method: $(DONE)/installed $(DONE)/test-requirements  ## docs/background/accuracy_cost.md: what simulate takes by default, and why
-	python docs/generators/default_method.py
-
-book-speed: $(DONE)/installed $(DONE)/bench-requirements  ## the book's claim of speed: docs/background/book_speed.md, written anew
-	@sh setup/debian_packages.sh octave
-	python docs/generators/book_speed.py
-
+# Random cases; 100,000 and more write the page.
 CASES ?= 100000
 SEED ?= 1
-fuzz: $(DONE)/installed $(DONE)/test-requirements  ## random cases (CASES, SEED); 100,000 and more write docs/background/fuzz.md
-	PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases $(CASES) --seed $(SEED) \
-	    --page docs/background/fuzz.md --record docs/records/fuzz.json
+define CAMPAIGN_fuzz
+PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases $(CASES) --seed $(SEED) \
+    --page docs/background/fuzz.md --record docs/records/fuzz.json
+endef
 
+# Damaged files and pickles, by coverage.
+SECONDS_EACH ?= 60
+define CAMPAIGN_readers
+for reader in case archive state scene store; do \
+    PYTHONPATH=tests:tests/models python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
+        -max_total_time=$(SECONDS_EACH) -artifact_prefix=out/fuzz/ || exit 1; \
+done
+endef
+
+# True errors against references of more digits.
 SEEDS ?= 0:5000
 FAMILIES ?= mixed damped chaotic stiff contact own short_links
 ERROR_WORKERS ?= 2
-test-error: $(DONE)/installed $(DONE)/error-requirements  ## true errors (SEEDS, FAMILIES) against references of more digits
-	PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
-	    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
-	    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
+define CAMPAIGN_errors
+PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
+    --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
+    --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
+endef
 
+# Which small mistakes the tests notice; hours, goes on where it stopped.
 PARTS ?= core package
 COUNT ?= 200
-mutants: $(DONE)/installed $(DONE)/mutant-requirements  ## which small mistakes the tests notice: COUNT in each of PARTS, drawn by SEED; hours, goes on where it stopped
-	for part in $(PARTS); do \
-	    PYTHONPATH=tests python -m mutants.campaign $$part --count $(COUNT) --seed $(SEED) || exit 1; \
-	done
-
-SECONDS_EACH ?= 60
-fuzz-readers: $(DONE)/installed $(DONE)/fuzz-requirements  ## damaged files and pickles, by coverage
-	for reader in case archive state scene store; do \
-	    PYTHONPATH=tests:tests/models python -m fuzz.guided $$reader out/fuzz/corpus -verbosity=0 \
-	        -max_total_time=$(SECONDS_EACH) -artifact_prefix=out/fuzz/ || exit 1; \
-	done
+define CAMPAIGN_mutants
+for part in $(PARTS); do \
+    PYTHONPATH=tests python -m mutants.campaign $$part --count $(COUNT) --seed $(SEED) || exit 1; \
+done
+endef
 
 clean:  ## remove all that was built, and the virtual environment
 	rm -rf build dist out .venv

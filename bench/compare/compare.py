@@ -4,7 +4,7 @@ Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (
 n links), `effects` (what each adds) and `ensembles` (many runs at once) are timed in turns, in one
 run each; `hard_cases` asks who is right. Each writes a record into docs/records and a page with
 figures; README.md in docs/comparison covers all solves.
-`make compare` and `make hard-cases` build what is needed and call this; by hand:
+`make compare` builds what is needed and calls this, with ONLY=... for some of them; by hand:
 
     python bench/compare/compare.py                        all that is timed, twenty minutes
     python bench/compare/compare.py --only chains stiff    some of them
@@ -25,6 +25,7 @@ import chains
 import effects
 import ensembles
 import excerpts
+import hard_cases
 import pages
 import solves
 import stiff
@@ -32,6 +33,7 @@ from cases import read_case
 from overview_tables import NAMES
 from pages import PAGES
 from record import Record
+from tqdm import tqdm
 
 PROJECT = Path(__file__).parents[2]
 HARD = "hard_cases"
@@ -54,17 +56,11 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--redraw", action="store_true", help="measure nothing, read the records")
     parser.add_argument("--output", type=Path, help="in place of docs")
     asked = parser.parse_args(given)
-    known = [*PAGES, *hard_case_names()]
+    known = [*PAGES, *hard_cases.CASES]
     unknown = [name for name in asked.only if name not in known]
     if unknown:
         parser.error(f"--only {' '.join(unknown)}: known are {', '.join(known)}")
     return asked
-
-
-def hard_case_names() -> list[str]:
-    import hard_cases
-
-    return list(hard_cases.CASES)
 
 
 def measure(stem: str, *, quick: bool, rounds: int) -> Record:
@@ -75,9 +71,6 @@ def measure(stem: str, *, quick: bool, rounds: int) -> Record:
 
 def measure_hard_cases(names: Sequence[str], path: Path) -> None:
     """Run hard cases, and write each at once beside the others that are recorded."""
-    import hard_cases
-    from tqdm import tqdm
-
     for name in tqdm(names, desc="hard cases", disable=None):
         before = Record.read(path) if path.exists() else None
         hard_cases.measure(name, before).write(path)
@@ -108,8 +101,8 @@ def run(stem: str, docs: Path, asked: argparse.Namespace) -> None:
     path = docs / PAGES[stem].record.format(stem)
     try:
         if stem == HARD and not asked.redraw:
-            chosen = [name for name in hard_case_names() if name in asked.only]
-            measure_hard_cases(chosen or hard_case_names(), path)
+            chosen = [name for name in hard_cases.CASES if name in asked.only]
+            measure_hard_cases(chosen or list(hard_cases.CASES), path)
         elif not asked.redraw:
             rounds = 3 if asked.quick else asked.rounds
             measure(stem, quick=asked.quick, rounds=rounds).write(path)

@@ -1,7 +1,6 @@
 """The comparison of effects: what each adds to a right-hand side of two links, beside MuJoCo.
 
-The baseline of each side is its own scene without the effect. contenders/effect_parameters.hpp has
-the numbers.
+The baseline of each side is its own scene without the effect.
 """
 
 from __future__ import annotations
@@ -9,11 +8,11 @@ from __future__ import annotations
 import time
 
 import count_instructions
-from chain_scenes import Array, chain_scene
-from chains import disagreement, nanoseconds
-from contenders.contender import Unsupported
-from contenders.forward_dynamics import Calls, ForwardDynamics, contenders
+from cases import Array
+from contenders.contender import Contender, Unsupported
+from contenders.programs import Calls, end_conversations
 from effect_list import BARE, EFFECTS
+from forward_dynamics import chain_scene, contenders, disagreement, facts, nanoseconds
 from machine import circumstances
 from measure import interleave
 from record import Point, Record
@@ -28,7 +27,7 @@ FACTS = ("label", "theirs", "ours", "most_ns", "most_instructions")
 
 
 def prepare(
-    entrants: list[ForwardDynamics],
+    entrants: list[Contender],
 ) -> tuple[dict[tuple[str, str], Calls], dict[str, float]]:
     """Prepare all calls; return how far apart the accelerations of both sides are."""
     calls: dict[tuple[str, str], Calls] = {}
@@ -57,39 +56,26 @@ def prepare(
     return calls, apart
 
 
-def instructions() -> list[Point]:
-    """Count the instructions of a right-hand side with each effect, and of the bare scene."""
-    names = [effect.name for effect in (BARE, *EFFECTS) if effect.ours]
-    rows = [
-        {"contender": contender, "case": name, "instructions": counts[way]}
-        for name, counts in count_instructions.count_effects(names).items()
-        for way, contender in count_instructions.WAYS.items()
-    ]
-    bare = count_instructions.count_bare()
-    for contender, what in (("pendcore_kernel", "kernel"), ("one_effect_more", "one_effect_more")):
-        if what in bare:
-            row = {"contender": contender, "case": BARE.name, "instructions": bare[what]}
-            rows.append(row)
-    return rows
-
-
 def measure(*, quick: bool, rounds: int) -> Record:
     """Measure everything that is here."""
     begin = time.perf_counter()
-    with contenders() as found:
-        entrants = [one for one in found if one.name in SIDES]
+    try:
+        entrants = [one for one in contenders() if one.name in SIDES]
         calls, apart = prepare(entrants)
         bar = tqdm(range(rounds), desc="effects", unit="round", disable=None)
         timings = interleave(calls, bar, BURST_SECONDS)
+    finally:
+        end_conversations()
     rows: dict[tuple[str, str], Point] = {}
     for (who, effect), timing in timings.items():
         row = {"contender": who, "case": effect, **nanoseconds(timing)}
         rows[who, effect] = row | {"disagreement": apart.get(effect) if who == PEER else None}
-    for counted in [] if quick else instructions():
+    names = [effect.name for effect in (BARE, *EFFECTS) if effect.ours]
+    for counted in [] if quick else count_instructions.rows_of(names):
         rows.setdefault((counted["contender"], counted["case"]), {}).update(counted)
     return Record.of(
         {"comparison": "effects", **circumstances(begin, rounds, BURST_SECONDS)},
-        {who.name: who.facts() for who in entrants},
+        {who.name: facts(who) for who in entrants},
         {
             effect.name: {fact: getattr(effect, fact) for fact in FACTS}
             for effect in (BARE, *EFFECTS)

@@ -10,14 +10,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 from cases import Array, Case, read_case
-from contenders.contender import PYTHON, PythonRun, Unsupported
+from contenders.contender import PYTHON, Contender, Outcome, PythonRun, Unsupported
 from contenders.pendcore_python import scene_of
 from machine import circumstances
 from measure import interleave
@@ -43,17 +43,6 @@ SCENES = {
 }
 Solve = Callable[[], Array]
 """A call that returns angles at the end, (k, n)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Contender:
-    """`prepare` makes a call from a case, starts (k, n) and a tolerance."""
-
-    name: str
-    label: str
-    prepare: Callable[[Case, Array, float], Solve]
-    tolerances: tuple[float, ...]
-    ours: bool = False
 
 
 def case_of(name: str) -> Case:
@@ -102,70 +91,54 @@ def equations(case: Case) -> list[tuple[Any, Any]]:
     return system(case, drive)
 
 
-def batches_of(case: Case, q0: Array, tolerance: float, size: int) -> tuple[Any, Array]:
-    """Compile heyoka's integrator of a batch; return it and the starts, (batches, n, size)."""
+def begin(taylor: Any, q0: Array) -> Any:
+    """Set angles and no rates, at the time 0."""
+    n = len(q0)
+    taylor.set_time(0.0)
+    taylor.state[:n], taylor.state[n:] = q0, 0.0
+    return taylor
+
+
+def by_heyoka(size: int, own_loop: bool, case: Case, q0: Array, tolerance: float) -> Solve:
+    """Take batches of that size in turn, by a loop or by the ensemble of batches that heyoka has.
+
+    Both run in one thread.
+    """
     import heyoka
 
     n = case.n
     taylor = heyoka.taylor_adaptive_batch(
         equations(case), np.zeros((2 * n, size)), tol=tolerance, fast_math=True
     )
-    return taylor, q0.reshape(-1, size, n).transpose(0, 2, 1).copy()
+    blocks = q0.reshape(-1, size, n).transpose(0, 2, 1).copy()
 
-
-def begin(taylor: Any, block: Array) -> Any:
-    n = len(block)
-    taylor.set_time(0.0)
-    taylor.state[:n] = block
-    taylor.state[n:] = 0.0
-    return taylor
-
-
-def by_batch(size: int, case: Case, q0: Array, tolerance: float) -> Solve:
-    """Propagate a batch to the end, and then the next."""
-    taylor, blocks = batches_of(case, q0, tolerance, size)
-    n = case.n
-
-    def solve() -> Array:
+    def loop() -> Array:
         ends = np.empty(blocks.shape)
         for block, end in zip(blocks, ends, strict=True):
             begin(taylor, block).propagate_until(SPAN[1])
             end[:] = taylor.state[:n]
         return ends.transpose(0, 2, 1).reshape(-1, n)
 
-    return solve
-
-
-def by_heyoka_ensemble(case: Case, q0: Array, tolerance: float) -> Solve:
-    """Use the ensemble of batches that heyoka has, in one thread."""
-    import heyoka
-
-    taylor, blocks = batches_of(case, q0, tolerance, heyoka.recommended_simd_size())
-    n = case.n
-
-    def solve() -> Array:
+    def ensemble() -> Array:
         found = heyoka.ensemble_propagate_until_batch(
             taylor, SPAN[1], len(blocks), lambda one, i: begin(one, blocks[i]), max_workers=1
         )
         return np.array([one[0].state[:n] for one in found]).transpose(0, 2, 1).reshape(-1, n)
 
-    return solve
+    return loop if own_loop else ensemble
 
 
 def truth(case: Case, q0: Array) -> Array:
     """Return the angles at the end from heyoka in long double, rounded, (k, n)."""
     import heyoka
 
-    long_double, n = np.longdouble, case.n
-    taylor = heyoka.taylor_adaptive(
-        equations(case), np.zeros(2 * n, dtype=long_double), fp_type=long_double
-    )
+    real, n = np.longdouble, case.n
+    taylor = heyoka.taylor_adaptive(equations(case), np.zeros(2 * n, dtype=real), fp_type=real)
     ends = np.empty(q0.shape)
     for start, end in zip(q0, ends, strict=True):
-        taylor.time = long_double(0)
-        taylor.state[:n] = start
-        taylor.state[n:] = 0
-        taylor.propagate_until(long_double(SPAN[1]))
+        taylor.time = real(0)
+        taylor.state[:n], taylor.state[n:] = start, 0
+        taylor.propagate_until(real(SPAN[1]))
         end[:] = taylor.state[:n]
     return ends
 
@@ -183,29 +156,35 @@ def by_scipy(case: Case, q0: Array, tolerance: float) -> Solve:
 
 
 def contenders() -> list[Contender]:
+    """List the contenders: `prepare` makes a call from a case, starts (k, n) and a tolerance."""
     import heyoka
 
-    loose = tuple(float(f"1e-{k}") for k in range(2, 9))
-    tight = tuple(float(f"1e-{k}") for k in range(3, 15))
-    orders = tuple(10.0**-k for k in range(3, 16, 2))  # each is compiled, which takes seconds
+    loose = [float(f"1e-{k}") for k in range(2, 9)]
+    tight = [float(f"1e-{k}") for k in range(3, 15)]
+    orders = [10.0**-k for k in range(3, 16, 2)]  # each is compiled, which takes seconds
     size = heyoka.recommended_simd_size()
-    methods = {"dopri5": loose, "dop853": tight, "taylor": tight}
-    return [
-        *(
-            Contender(who, f"pc.ensemble {who}", partial(by_ensemble, who, 1), at, ours=True)
-            for who, at in methods.items()
+    listed: list[tuple[str, str, Callable[..., Solve], list[float]]] = [
+        ("dopri5", "pc.ensemble dopri5", partial(by_ensemble, "dopri5", 1), loose),
+        ("dop853", "pc.ensemble dop853", partial(by_ensemble, "dop853", 1), tight),
+        ("taylor", "pc.ensemble taylor", partial(by_ensemble, "taylor", 1), tight),
+        ("loop", "loop of pc.simulate", by_loop, tight[::2]),
+        (f"batch_{size}", f"heyoka, batches of {size}", partial(by_heyoka, size, True), orders),
+        (
+            f"batch_{2 * size}", f"heyoka, batches of {2 * size}",
+            partial(by_heyoka, 2 * size, True), orders,
         ),
-        Contender("loop", "loop of pc.simulate", by_loop, tight[::2]),
-        *(
-            Contender(f"batch_{k}", f"heyoka, batches of {k}", partial(by_batch, k), orders)
-            for k in (size, 2 * size)
+        (
+            "heyoka_ensemble", "heyoka ensemble_propagate_until_batch",
+            partial(by_heyoka, size, False), orders[::2],
         ),
-        Contender(
-            "heyoka_ensemble", "heyoka ensemble_propagate_until_batch", by_heyoka_ensemble,
-            orders[::2],
-        ),
-        Contender("scipy", "SciPy DOP853, numba", by_scipy, tight[::3]),
+        ("scipy", "SciPy DOP853, numba", by_scipy, tight[::3]),
     ]  # fmt: skip
+    return [
+        Contender(
+            name, label, "", prepare, ours="pc.ensemble" in label, settings=lambda _, at=at: at
+        )
+        for name, label, prepare, at in listed
+    ]
 
 
 def measured(name: str, *, quick: bool, rounds: int) -> tuple[Point, list[Point]]:
@@ -217,7 +196,7 @@ def measured(name: str, *, quick: bool, rounds: int) -> tuple[Point, list[Point]
     rows: dict[tuple[str, float], Point] = {}
     for one in contenders():
         few = q0[: FEW.get(one.name, members)]
-        for tolerance in one.tolerances[:: 3 if quick else 1]:
+        for tolerance in one.settings(1)[:: 3 if quick else 1]:
             try:
                 solve = one.prepare(case, few, tolerance)
             except Unsupported:
@@ -227,7 +206,8 @@ def measured(name: str, *, quick: bool, rounds: int) -> tuple[Point, list[Point]
             runs[one.name, tolerance] = timed(solve)
             row = {"contender": one.name, "case": name, "setting": tolerance}
             rows[one.name, tolerance] = row | {"error": float(np.median(errors))}
-    taken = interleave(runs, turns_of(rounds, name), BURST_SECONDS)
+    turns = tqdm(range(rounds), desc=name, unit="round", disable=None)
+    taken = interleave(runs, turns, BURST_SECONDS)
     for key, timing in taken.items():
         microseconds = 1e6 / min(FEW.get(key[0], members), members)
         rows[key]["minimum_us"] = microseconds * timing.minimum
@@ -269,14 +249,7 @@ def spin(count: int) -> int:
 
 
 def timed(solve: Callable[[], Any]) -> PythonRun[Any]:
-    def unused(_: object) -> Any:
-        raise NotImplementedError
-
-    return PythonRun(solve, unused)
-
-
-def turns_of(rounds: int, name: str) -> Any:
-    return tqdm(range(rounds), desc=name, unit="round", disable=None)
+    return PythonRun(solve, Outcome)
 
 
 def measure(*, quick: bool, rounds: int, scenes: Iterable[str] = SCENES) -> Record:

@@ -5,6 +5,7 @@ They stand between a pair of comments that name them, and are written anew with 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,10 @@ from equal_error import OUTER_SIDES, compare
 from record import Record
 from solve_tables import at_tolerance, per_evaluation, solves_of
 from tables import NONE, number, power, short, table
+
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
+
+from page_part import rewrite
 
 CORE, PYTHON = "pendcore_dopri5_cpp", "pendcore_dopri5"
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -59,17 +64,7 @@ EXCERPTS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
 }
 
 
-def insert(text: str, name: str, excerpt: str) -> str:
-    """Replace what stands between the comments of that name."""
-    begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
-    before, _, rest = text.partition(begin)
-    _, _, after = rest.partition(end)
-    return before + begin + excerpt + end + after
-
-
 def write(project: Path, record: Record) -> None:
     """Bring the documents up to date with the record."""
     for document, (name, excerpt) in EXCERPTS.items():
-        path = project / document
-        text = insert(path.read_text(encoding="utf-8"), name, excerpt(record.data))
-        path.write_text(text, encoding="utf-8")
+        rewrite(project / document, **{name: excerpt(record.data)})

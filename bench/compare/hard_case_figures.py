@@ -5,12 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-
-mpl.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
+from figures import plt, save
 from hard_case_tables import PROGRAMS
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -186,9 +182,6 @@ FIGURES = {
 def draw(record: Record, path: Path) -> None:
     """Draw the figures of the cases that the record has, into the folder of all figures."""
     folder = path.parents[1] / "figures"
-    folder.mkdir(parents=True, exist_ok=True)
     for name in record.cases:
         if name in FIGURES:
-            figure = FIGURES[name](record, name)
-            figure.savefig(folder / f"hard_cases_{name}.png", dpi=160)
-            plt.close(figure)
+            save(FIGURES[name](record, name), folder / f"hard_cases_{name}.png", 160)

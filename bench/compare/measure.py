@@ -11,19 +11,14 @@ import random
 import statistics
 from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from cases import Case
-from contenders.contender import Run
+from contenders.contender import Run, Timed
 from trajectory_error import end_error, energy_error, position_error
 
 Key = TypeVar("Key", bound=Hashable)
-
-
-class Timed(Protocol):
-    def burst(self, seconds: float) -> list[float]:
-        """Call for about that long and list each call's seconds."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from equal_error import (
     DECADES,
     OUTER_SIDES,
     SIDES,
+    Comparison,
     Contender,
     Entrants,
     Side,
@@ -32,6 +33,12 @@ def solves_of(record: Record) -> tuple[str, Entrants]:
     return case, record.taking_part(case)
 
 
+def both(at: Comparison, name: Callable[[str], str] = short) -> list[str]:
+    """Write the best of pendcore and its time, then the best peer and its time."""
+    sides = (at.own or (None, NONE), at.peer or (None, NONE))
+    return [cell for time, label in sides for cell in (name(label), number(time))]
+
+
 def best_against_best(who: Entrants, side: Side, errors: Iterable[float] = DECADES) -> str:
     """Tabulate, for each achieved error, the best of both sides and the goal.
 
@@ -42,14 +49,12 @@ def best_against_best(who: Entrants, side: Side, errors: Iterable[float] = DECAD
         return "Not measured: one of the two sides was not there.\n"
     rows = []
     for at in compared:
-        own, peer = at.own or (None, NONE), at.peer or (None, NONE)
         if at.ratio is None:
             found = "pendcore alone" if at.own else "peer alone" if at.peer else "nobody"
         else:
             found = pair(at.ratio, at.of_medians)
         goal = f"{at.bar} {'reached' if at.reached else 'missed'}" if at.own or at.peer else NONE
-        sides = [cell for time, label in (own, peer) for cell in (short(label), number(time))]
-        rows.append([power(at.error), *sides, found, goal])
+        rows.append([power(at.error), *both(at), found, goal])
     return table(
         ["achieved error", "best of pendcore", "us", "best peer", "us", "ratio", "goal"], rows
     )
@@ -211,12 +216,12 @@ def ensemble_scenes(record: Record) -> str:
     parts = []
     for case, facts in record.cases.items():
         who = record.taking_part(case)
-        both = [one for one in who if one["ours"] or "heyoka" in one["label"]]
+        rivals = [one for one in who if one["ours"] or "heyoka" in one["label"]]
         best = []
-        for at in compare(both, OUTER_SIDES[1], ENSEMBLE_ERRORS):
-            own, peer = at.own or (None, NONE), at.peer or (None, NONE)
-            cells = [cell for time, label in (own, peer) for cell in (label, number(time))]
-            best.append([power(at.error), *cells, f"**{number(at.ratio)}**", ENSEMBLE_BARS[case]])
+        for at in compare(rivals, OUTER_SIDES[1], ENSEMBLE_ERRORS):
+            best.append(
+                [power(at.error), *both(at, str), f"**{number(at.ratio)}**", ENSEMBLE_BARS[case]]
+            )
         rows = [
             [each["label"], *at_errors({"points": record.points(name, case)}, ENSEMBLE_ERRORS)]
             for name, each in record.contenders.items()

@@ -8,8 +8,8 @@ from typing import Any
 
 import contenders
 from cases import Case, one_step
-from contenders.compiled import end_conversations
 from contenders.contender import Contender, Run, Unsupported
+from contenders.programs import end_conversations
 from machine import circumstances
 from measure import Timing, achieved, interleave
 from record import ONE_STEP, Point, Record

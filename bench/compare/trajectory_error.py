@@ -37,20 +37,30 @@ def end_error(q: Array, reference: Array, lengths: Array) -> float:
     return float(distances(q, reference, lengths)[-1])
 
 
+def coupling(masses: Array, lengths: Array) -> tuple[Array, Array]:
+    """Return A (n, n) and a (n,) of rods: M = A cos(q_i - q_j), and a g cos q is the weight."""
+    beyond = np.append(np.cumsum(masses[::-1])[::-1][1:], 0.0)  # mass carried by each link
+    moments = lengths * (masses / 2 + beyond)
+    links = np.arange(len(masses))
+    matrix = lengths[np.minimum.outer(links, links)] * moments[np.maximum.outer(links, links)]
+    matrix[links, links] = lengths**2 * (masses / 3 + beyond)
+    return matrix, moments
+
+
+def energy(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> Array:
+    """Return the energy of uniform rods at each time, J, (n_t,)."""
+    inertia, moment = coupling(masses, lengths)
+    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
+    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
+    return cast(Array, kinetic - gravity * (np.sin(q) @ moment))
+
+
 def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:
     """Measure the largest drift of the energy of uniform rods from its start.
 
     The drift is a share of the energy that the whole mass gains by falling the whole length, or,
     without gravity, of the kinetic energy at the start.
     """
-    below = np.append(np.cumsum(masses[::-1])[::-1][1:], 0.0)  # mass carried beyond each link
-    moment = lengths * (masses / 2 + below)
-    links = np.arange(len(masses))
-    nearer, farther = np.minimum.outer(links, links), np.maximum.outer(links, links)
-    inertia = lengths[nearer] * moment[farther]
-    inertia[links, links] = lengths**2 * (masses / 3 + below)
-    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
-    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
-    total = kinetic - gravity * (np.sin(q) @ moment)
-    scale = gravity * masses.sum() * lengths.sum() if gravity else kinetic[0]
+    total = energy(q, qd, masses, lengths, gravity)
+    scale = gravity * masses.sum() * lengths.sum() if gravity else total[0]
     return float(np.abs(total - total[0]).max() / scale)

@@ -1,6 +1,6 @@
 """Whether `simulate(error=...)` keeps what it was asked for, and what that costs.
 
-    make asked-errors
+    make write PAGE=asked_errors
 
 On 200 random regular scenes, it measures the error against another method's most accurate run. It
 compares the work with that of the best of all methods and tolerances swept. Then it times, in
@@ -23,6 +23,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import pendcore as pc
+from page_part import rewrite
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.target_error import search
 from pendcore._accuracy.trials import Strategy, TrialRun, Trials
@@ -42,7 +43,6 @@ OPTIONS_OF_TRIALS = {
     if not (option.chosen_for_error or name in ("on_failure", "error", "progress"))
 }
 Timed: TypeAlias = Callable[..., object]
-BEGIN, END = "<!-- asked: begin -->\n", "<!-- asked: end -->"
 # The table has a row for each of these: its words, its key, and the goal, where there is one: a
 # number and the least share of the scenes that keep it.
 ROWS: list[tuple[str, str, tuple[float, float] | None]] = [
@@ -173,9 +173,7 @@ def main() -> None:
         one = regular(seed)
         found.append(outcome(one) | times(one))
     (ROOT / "docs/records/asked_errors.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/background/accuracy_cost.md"
-    before, _, rest = page.read_text().partition(BEGIN)
-    page.write_text(before + BEGIN + table(found) + END + rest.partition(END)[2])
+    rewrite(ROOT / "docs/background/accuracy_cost.md", asked=table(found))
     print(table(found))
 
 

@@ -1,6 +1,6 @@
 """The textbook's claim of speed, measured: inline function, function file, NumPy, compiled core.
 
-    make book-speed
+    make write PAGE=book_speed
 
 All take turns in one run. It writes docs/records/book_speed.json, the tables of
 docs/background/book_speed.md and the figure docs/figures/book_speed.png.
@@ -23,11 +23,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pendcore as pc
+from page_part import rewrite
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "bench/compare"))
 from contenders.contender import PythonRun  # noqa: E402
-from contenders.conversation import Conversation  # noqa: E402
+from contenders.programs import Conversation  # noqa: E402
 from machine import circumstances  # noqa: E402
 from measure import Timing, interleave  # noqa: E402
 
@@ -46,7 +47,6 @@ WAYS = {
 STATES = (1, 100, 100_000)
 CALLS = 200
 ROUNDS, BURST, SECONDS_A_RUN = 24, 0.02, 15.0
-BEGIN, END = "<!-- book speed: {}: begin -->\n", "<!-- book speed: {}: end -->"
 
 
 @dataclass(frozen=True)
@@ -328,14 +328,9 @@ def figure(found: dict[str, Any], path: Path) -> None:
 def main() -> None:
     found = record(ROUNDS)
     (ROOT / "docs/records/book_speed.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/background/book_speed.md"
-    text = page.read_text()
-    for name, table in TABLES.items():
-        before, _, rest = text.partition(BEGIN.format(name))
-        after = rest.partition(END.format(name))[2]
-        text = before + BEGIN.format(name) + table(found) + END.format(name) + after
-        print(table(found))
-    page.write_text(text)
+    tables = {f"book speed: {name}": table(found) for name, table in TABLES.items()}
+    rewrite(ROOT / "docs/background/book_speed.md", **tables)
+    print(*tables.values(), sep="\n")
     figure(found, ROOT / "docs/figures/book_speed.png")
 
 

@@ -1,6 +1,6 @@
 """The method and tolerances that `simulate` takes by default, and the measurements behind them.
 
-    make default-method
+    make write PAGE=default_method
 
 It writes two tables of docs/background/accuracy_cost.md, and docs/records/default_method.json:
 errors and times of the default at several tolerances on 200 random regular scenes, beside dopri5;
@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
+from page_part import rewrite
 from pendcore._accuracy.position_error import time_grid
 
 ROOT = Path(__file__).parents[2]
@@ -42,7 +43,6 @@ YARDSTICK = f"{DEFAULT}, rtol 1e-9"
 SPANS = {1: 10.0, 2: 10.0, 3: 3.0, 4: 3.0, 6: 2.0, 10: 2.0, 30: 1.0, 100: 0.4}  # links: s
 METHODS = ("dopri5", "dop853", "taylor")
 ERRORS = (1e-4, 1e-6, 1e-8, 1e-10)
-BEGIN, END = "<!-- default {}: begin -->\n", "<!-- default {}: end -->"
 
 
 def timed(
@@ -150,14 +150,9 @@ def main() -> None:
     chains = [of_chain(n) for n in with_progress(SPANS, "chain")]
     record = {"scenes": scenes, "chains": chains}
     (ROOT / "docs/records/default_method.json").write_text(json.dumps(record, indent=1) + "\n")
-    page = ROOT / "docs/background/accuracy_cost.md"
-    text = page.read_text()
-    for name, table in (("scenes", table_of_scenes(scenes)), ("chains", table_of_chains(chains))):
-        before, _, rest = text.partition(BEGIN.format(name))
-        end = END.format(name)
-        text = before + BEGIN.format(name) + table + end + rest.partition(end)[2]
-        print(table)
-    page.write_text(text)
+    tables = {"default_scenes": table_of_scenes(scenes), "default_chains": table_of_chains(chains)}
+    rewrite(ROOT / "docs/background/accuracy_cost.md", **tables)
+    print(*tables.values(), sep="\n")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Make the README's film: three pendulums that start a ten-thousandth of a radian apart.
 
-    make film
+    make write PAGE=film
 
 writes docs/figures/swing.gif, in true time.
 """

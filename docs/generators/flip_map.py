@@ -1,6 +1,6 @@
 """The flip map of the textbook's rods, which pixels of it are true, and a check in many digits.
 
-    make flip-map
+    make write PAGE=flip_map
 
 It runs what docs/background/flip_map.md tells of, and writes the numbers of that page,
 docs/records/flip_map.json and docs/figures/flip_map.png. The truth at some pixels comes from the
@@ -23,6 +23,7 @@ import matplotlib as mpl
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
+from page_part import rewrite
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cost.measurement import processor
 from scipy.interpolate import CubicHermiteSpline
@@ -40,7 +41,6 @@ CHECKED = 1000
 GRID = 0.02  # s, of the times at which turns are counted in many digits
 CLOSE = 0.1  # rad, between upright and a reversal that is computed in many digits as well
 LONGEST = 30.0  # s, of a motion in many digits
-BEGIN, END = "<!-- flip map: begin -->\n", "<!-- flip map: end -->"
 
 Floats = NDArray[np.float64]
 
@@ -205,7 +205,7 @@ def page(record: dict[str, Any]) -> str:
     end = f"10^{np.log10(record['t_end'] / UNIT):.0f} sqrt(l/g) = {record['t_end']:.0f} s"
     times = f"{record['seconds']:.0f} s on {record['processors']} processors ({record['machine']})"
     both = f"{record['seconds with the second ensemble']:.0f} s"
-    return f"""{BEGIN}
+    return f"""
 {size}, to {end}. The map took {times},
 with the second ensemble {both}. At {record["forbidden"]:.1%} of the pixels energy forbids that
 a link turns over.
@@ -218,7 +218,7 @@ a link turns over.
 over, or for at most {check["longest"]:.0f} s: {check["that turn over"]} turned over by then.
 **{check["wrong"]} of them were wrong.**
 
-{END}"""
+"""
 
 
 def main() -> None:
@@ -250,9 +250,7 @@ def main() -> None:
     (args.out / "records/flip_map.json").write_text(json.dumps(record, indent=1) + "\n")
     path = args.out / "background/flip_map.md"
     if path.exists():
-        text = path.read_text()
-        before, after = text.split(BEGIN)[0], text.split(END)[1]
-        path.write_text(before + page(record) + after)
+        rewrite(path, flip_map=page(record))
     print(page(record))
 
 

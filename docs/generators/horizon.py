@@ -1,6 +1,6 @@
 """How long a chaotic run is right, how long it says that it is, and what one more digit is worth.
 
-    make horizon
+    make write PAGE=horizon
 
 It runs what docs/background/horizon.md tells of, and writes the tables of that page,
 docs/records/horizon.json and the figures docs/figures/horizon_*.png. The truth comes from the
@@ -20,6 +20,7 @@ import matplotlib as mpl
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
+from page_part import rewrite
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
@@ -34,7 +35,6 @@ RTOLS = [1e-4, 1e-6, 1e-9, 1e-12]
 FIVE_RTOLS = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 STUDENT = 3.5  # of Student's t with 49 degrees of freedom, 99.9 % lie within +- this
 METHODS = [m["name"] for m in pc._core.methods() if m["name"] in ("dopri5", "dop853", "taylor")]
-BEGIN, END = "<!-- horizon: begin -->\n", "<!-- horizon: end -->"
 FIGURES = ROOT / "docs/figures"
 
 
@@ -240,9 +240,7 @@ def main() -> None:
         },
     }
     (ROOT / "docs/records/horizon.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/background/horizon.md"
-    before, rest = page.read_text().split(BEGIN)
-    page.write_text(before + BEGIN + table(found) + END + rest.split(END)[1])
+    rewrite(ROOT / "docs/background/horizon.md", horizon=table(found))
     draw_run(FIGURES / "horizon_run.png")
     draw_trusted(found, FIGURES / "horizon_starts.png")
     draw_exponents(spectrum, FIGURES / "horizon_exponents.png")

@@ -1,6 +1,6 @@
 """What ten million steps do to the energy, with and without compensated steps.
 
-    make long
+    make write PAGE=long_runs
 
 It runs both, checks what docs/background/long_runs.md promises, and writes
 docs/records/long_runs.json, the figure docs/figures/long_runs.png and the tables of the page.
@@ -20,10 +20,10 @@ import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 from mpmath import cos, mp, mpf, sin
+from page_part import rewrite
 
 ROOT = Path(__file__).parents[2]
 BOOK = pc.Scene.textbook()
-BEGIN, END = "<!-- long runs: begin -->\n", "<!-- long runs: end -->"
 STEP = 5e-4
 FINE = 1e-4
 """s: at this step the method's own error stays below the rounding of the energies."""
@@ -177,9 +177,7 @@ def figure(found: dict[str, Any], path: Path) -> None:
 def main() -> None:
     found = record(10_000_000, 24)
     (ROOT / "docs/records/long_runs.json").write_text(json.dumps(found, indent=1) + "\n")
-    page = ROOT / "docs/background/long_runs.md"
-    before, rest = page.read_text().split(BEGIN)
-    page.write_text(before + BEGIN + tables(found) + END + rest.split(END)[1])
+    rewrite(ROOT / "docs/background/long_runs.md", long_runs=tables(found))
     figure(found, ROOT / "docs/figures/long_runs.png")
     print(tables(found))
     largest = found["compensated"]["drift"]["of_kinetic"]

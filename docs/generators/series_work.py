@@ -1,6 +1,6 @@
 """Whether series of taylor and corrections cost what `simulate(error=)` takes them to cost.
 
-    make asked-errors
+    make write PAGE=asked_errors
 
 Series of taylor, right-hand sides in the correction of their error and right-hand sides of dop853
 are timed in turns on the same scene, with every effect. The ratios of the times are divided by what

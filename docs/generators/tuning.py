@@ -18,10 +18,10 @@ from typing import Any
 import asked_errors
 import numpy as np
 import pendcore as pc
+from page_part import rewrite
 from pendcore._accuracy import strategies, tuning
 
 ROOT = Path(__file__).parents[2]
-BEGIN, END = "<!-- tuning: begin -->\n", "<!-- tuning: end -->"
 RUNS_DO_NOT_DEPEND_ON = {"HOPELESS", "LATE", "LARGE_ANGLE", "MOST_SEARCHES"}
 HEAD = """\
 | changed | within 3.5 times | within 6 times | median | largest | largest true / told error |
@@ -101,9 +101,7 @@ def tables(scenes: list[Any]) -> str:
 
 def main() -> None:
     scenes = [asked_errors.regular(seed) for seed in asked_errors.SCENES]
-    page = ROOT / "docs/background/accuracy_cost.md"
-    before, _, rest = page.read_text().partition(BEGIN)
-    page.write_text(before + BEGIN + tables(scenes) + END + rest.partition(END)[2])
+    rewrite(ROOT / "docs/background/accuracy_cost.md", tuning=tables(scenes))
 
 
 if __name__ == "__main__":

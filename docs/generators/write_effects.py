@@ -11,15 +11,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from effect_pages import kinds_table, pages
+from page_part import with_part
 
 ROOT = Path(__file__).parents[2]
-BEGIN, END = "<!-- kinds: begin -->\n", "<!-- kinds: end -->"
 
 
 def with_kinds(text: str) -> str:
     """Return the reference of case files with the table of kinds as it should be."""
-    before, rest = text.split(BEGIN)
-    return before + BEGIN + kinds_table() + END + rest.split(END)[1]
+    return with_part(text, "kinds", kinds_table())
 
 
 def written() -> dict[Path, str]:

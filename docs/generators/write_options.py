@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from math import inf
 from pathlib import Path
 
+from page_part import with_part
 from pendcore.options import OPTIONS, RunOption
 
 ROOT = Path(__file__).parents[2]
-BEGIN, END = "<!-- options: begin -->\n", "<!-- options: end -->"
 HEAD = """\
 | key | unit | default | meaning |
 |---|---|---|---|
@@ -59,10 +59,9 @@ def _toml(value: object) -> str:
 def written() -> dict[Path, str]:
     """Return every file and its text."""
     page, module = ROOT / "docs/how_to/case_files.md", ROOT / "python/pendcore/options.py"
-    before, rest = page.read_text().split(BEGIN)
     return {
         module: KEYWORDS.sub(keywords(), module.read_text()),
-        page: before + BEGIN + table() + END + rest.split(END)[1],
+        page: with_part(page.read_text(), "options", table()),
     }
 
 

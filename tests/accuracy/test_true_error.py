@@ -1,6 +1,6 @@
-"""What `make test-error` claims holds on a few scenes of each family, and it sees mistakes.
+"""What `make campaign OF=errors` claims holds on a few scenes of each family, and it sees mistakes.
 
-`pytest --full` takes a few dozen of each; the whole of it is `make test-error`.
+`pytest --full` takes a few dozen of each; the whole of it is `make campaign OF=errors`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SEEDS = [
         for begin, end in ((100_002, 100_008), (100_008, 100_016), (100_016, 100_024))
     ),
 ]
-"""`make test-error` has none of these seeds by default."""
+"""`make campaign OF=errors` has none of these seeds by default."""
 SECONDS = 60.0
 """An answer may take this long, s: so few scenes must not time out on a busy machine."""
 

@@ -1,4 +1,4 @@
-"""The references of `make test-error` are right: exact answers, other derivations, more digits."""
+"""References of `make campaign OF=errors` are right: exact answers, other forms, more digits."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 The counts are the same on every run. The tests are skipped where valgrind is missing, or where the
 programs that `make build-bench` builds are missing or older than the core.
-PENDCORE_FORWARD_DYNAMICS may name the folder of these programs.
+FORWARD_DYNAMICS_PENDCORE and FORWARD_DYNAMICS_ONE_EFFECT_MORE may name these programs.
 """
 
 from __future__ import annotations
@@ -17,9 +17,15 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 
-from chain_scenes import chain_scene
-from contenders.forward_dynamics import described
-from count_instructions import KERNEL, WAYS, NotCounted, count, executed, programs
+from count_instructions import (
+    CALL,
+    KERNEL,
+    STEP,
+    NotCounted,
+    count,
+    count_right_hand_side,
+    programs,
+)
 from effect_list import EFFECTS
 
 pytestmark = pytest.mark.outside_build
@@ -52,7 +58,7 @@ def program(built: tuple[Path, Path]) -> Path:
 
 @cache
 def in_step(program: Path, effect: str) -> float:
-    return count(program, effect, WAYS["step"])
+    return count_right_hand_side(program, effect, STEP)
 
 
 def registered(program: Path) -> int:
@@ -63,12 +69,10 @@ def registered(program: Path) -> int:
 
 
 def in_run(program: Path, effect: str) -> float:
-    prepare = f"prepare pendcore_run {described(chain_scene(2, effect))}"
-    six, none = (executed(program, [prepare, "make 0 3", f"make 0 {runs}"]) for runs in (6, 0))
-    return (six - none) / 6
+    return count(program, effect, "pendcore_run", calls=3)
 
 
-@pytest.mark.parametrize("way", WAYS.values())
+@pytest.mark.parametrize("way", [CALL, STEP])
 def test_bare_scene_executes_no_instruction_for_one_law_more_in_the_list(way, built) -> None:
     program, longer = built
     assert registered(longer) == registered(program) + 1
@@ -76,7 +80,7 @@ def test_bare_scene_executes_no_instruction_for_one_law_more_in_the_list(way, bu
 
 
 def test_bare_scene_executes_the_kernel_that_knows_no_effect(program: Path) -> None:
-    assert in_step(program, "none") == count(program, "none", KERNEL)
+    assert in_step(program, "none") == count_right_hand_side(program, "none", KERNEL)
 
 
 def test_constants_of_the_mass_matrix_cost_nothing_and_friction_that_slides_one_torque(program):

@@ -1,4 +1,4 @@
-"""What docs/background/long_runs.md says, in fewer steps: `make long` has all ten million."""
+"""What docs/background/long_runs.md says, in fewer steps than `make write PAGE=long_runs` takes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Any run at all is bounded, what it reached is finite, and it says how it ended.
 
 The claims are those of `fuzz.claims`. Here hypothesis looks for a run that breaks one, and makes it
-small. It tries the same runs each time, because `make fuzz` looks further and survives a crash.
+small. It tries the same runs each time, because `make campaign OF=fuzz` looks further and survives
+a crash.
 """
 
 from __future__ import annotations

@@ -14,9 +14,9 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 import chains
 import effects
 from cases import one_step, read_case
-from chain_scenes import ChainScene
 from contenders.contender import Outcome, PythonRun, Unsupported
 from equal_error import SIDES, compare, envelope, time_at
+from forward_dynamics import ChainScene
 from measure import achieved, interleave
 from trajectory_error import end_error, energy_error, position_error
 

@@ -14,10 +14,10 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 import contenders
 import stiff
 from cases import read_case
-from contenders import compiled
 from contenders.contender import Unsupported
 from contenders.equations import fill, jacobian, rates
 from contenders.pendcore_python import scene_of
+from contenders.programs import end_conversations
 from dense_chain import DenseChain, joints
 from trajectory_error import position_error
 
@@ -88,7 +88,7 @@ def found():
     entrants, _ = contenders.installed()
     assert any(who.name == "pendcore_dopri5" for who in entrants)
     yield {who.name: who for who in entrants}
-    compiled.end_conversations()
+    end_conversations()
 
 
 @pytest.mark.outside_build

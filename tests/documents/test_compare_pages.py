@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 # `make compare` asks for these, and `make test` alone does not; .ci/run has them.
@@ -25,7 +25,9 @@ import overview_tables  # noqa: E402
 import pages  # noqa: E402
 import solve_tables  # noqa: E402
 import solves  # noqa: E402
-from contenders.conversation import find_executable  # noqa: E402
+from contenders.contender import Unsupported  # noqa: E402
+from contenders.programs import find_executable  # noqa: E402
+from effect_list import parameters  # noqa: E402
 from equal_error import compare as best_against_best  # noqa: E402
 from pages import PAGES  # noqa: E402
 from record import Record  # noqa: E402
@@ -97,7 +99,7 @@ def test_a_quick_run_of_solves_measures_whom_it_finds(tmp_path, monkeypatch):
 @pytest.mark.outside_build
 def test_quick_runs_of_chains_and_effects_measure_pendcore(tmp_path, monkeypatch):
     try:
-        find_executable("forward_dynamics_pendcore", "PENDCORE_FORWARD_DYNAMICS")
+        find_executable("forward_dynamics_pendcore")
     except ImportError as absence:
         pytest.skip(str(absence))
     for module in (chains, effects):
@@ -116,8 +118,20 @@ def test_quick_runs_of_chains_and_effects_measure_pendcore(tmp_path, monkeypatch
 
 
 def test_every_effect_is_carried_by_the_side_that_says_so():
+    pytest.importorskip("mujoco")
+    import mujoco_models
+
     folder = Path(effects.__file__).parent / "contenders"
+    for file in ("pendcore_forward.cpp", "mujoco_forward.cpp"):
+        assert '"user"' in (folder / file).read_text()
     for one in effects.EFFECTS:
-        for says, file in ((one.ours, "pendcore_forward.cpp"), (one.theirs, "mujoco_scene.cpp")):
-            carried = re.findall(r'(?:name|effect) == "(\w+)"', (folder / file).read_text())
-            assert bool(says) == (one.name in carried)
+        of_core = parameters(one.name)
+        carried = True
+        for effect in of_core:
+            rods = mujoco_models.chain([1.0, 1.0], [1.0, 1.0], 9.8)
+            try:
+                mujoco_models.add_effect(rods, effect, np.array([1.0, 0.0, 0.0]))
+            except Unsupported:
+                carried = False
+        assert one.ours == bool(of_core or one.name == "user")
+        assert bool(one.theirs) == carried, one.name

@@ -1,1 +1,1 @@
-"""Random runs: drawn, run, judged, made small; see CONTRIBUTING.md, `make fuzz`."""
+"""Random runs: drawn, run, judged, made small; see CONTRIBUTING.md, `make campaign OF=fuzz`."""

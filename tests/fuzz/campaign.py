@@ -1,4 +1,4 @@
-"""`make fuzz`: random cases by the hundred thousand, in processes that are watched.
+"""`make campaign OF=fuzz`: random cases by the hundred thousand, in processes that are watched.
 
     PYTHONPATH=tests:tests/models python -m fuzz.campaign --cases 100000 --seed 1
     PYTHONPATH=tests:tests/models python -m fuzz.campaign --seed 1 --only 4711  # again, made small

@@ -1,4 +1,4 @@
-"""`make fuzz-readers`: damaged input that coverage guides (atheris), from the examples on.
+"""`make campaign OF=readers`: damaged input that coverage guides (atheris), from the examples on.
 
     PYTHONPATH=tests:tests/models python -m fuzz.guided case out/fuzz/corpus -max_total_time=60
 

@@ -234,7 +234,7 @@ KINDS = pc.effects.kinds()
 @pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [k for k, c in KINDS.items() if not issubclass(c, OwnEffect)])
 def test_the_cost_of_a_series_is_measured_with_every_kind_of_effect_that_has_one(kind):
-    """An effect that is added goes into EFFECTS of that program, and `make asked-errors` runs."""
+    """An effect that is added goes into EFFECTS of docs/generators/series_work.py, which is run."""
     assert EFFECTS[kind].kind == kind
     assert (kind in TOGETHER) != (kind in NOT_CARRIED)
     scene = pc.Scene(links=[pc.Link(mass=1, length=1)] * 2, effects=[EFFECTS[kind]])

@@ -1,4 +1,4 @@
-"""`make mutants`: which small mistakes, drawn by a seed, the tests of `make test` notice.
+"""`make campaign OF=mutants`: which small mistakes, drawn by a seed, `make test` notices.
 
     PYTHONPATH=tests python -m mutants.campaign core --count 200 --seed 1
     PYTHONPATH=tests python -m mutants.campaign package --count 200 --seed 1

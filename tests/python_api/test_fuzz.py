@@ -1,4 +1,4 @@
-"""A few hundred cases of `make fuzz` and of `make fuzz-readers`, the same in every run."""
+"""A few hundred cases of `make campaign` OF=fuzz and OF=readers, the same in every run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SEED = "ci"
 
 
 def test_random_cases_end_in_time_and_keep_every_claim():
-    """The whole campaign, of a hundred thousand cases, is `make fuzz`."""
+    """The whole campaign, of a hundred thousand cases, is `make campaign OF=fuzz`."""
     told = campaign.run(SEED, range(CASES))
     assert told.outcomes.total() == CASES
     assert not told.failed, campaign.report_of("", told, SEED, 0)

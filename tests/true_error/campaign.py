@@ -1,4 +1,4 @@
-"""`make test-error`: scenes by the thousand, each held against a reference of more digits.
+"""`make campaign OF=errors`: scenes by the thousand, each held against a reference of more digits.
 
     PYTHONPATH=tests python -m true_error.campaign --family mixed --seeds 0:5000 --workers 2
     PYTHONPATH=tests python -m true_error.campaign --family mixed --seeds 4711:4712    # that one

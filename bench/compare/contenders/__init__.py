@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import importlib
 
-from contenders.compiled import PROGRAMS, of_program
 from contenders.contender import Contender
+from contenders.programs import SOLVERS, solvers_of
 
 MODULES = ("heyoka_taylor", "pendcore_python", "cyrk", "scipy_solvers")
 
@@ -14,9 +14,9 @@ def installed() -> tuple[list[Contender], dict[str, str]]:
     """Find the contenders that are installed or built, and the reasons why others are not."""
     found: list[Contender] = []
     absent: dict[str, str] = {}
-    for program in PROGRAMS:
+    for program in SOLVERS:
         try:
-            found += of_program(program)
+            found += solvers_of(program)
         except (ImportError, OSError) as absence:
             absent[program] = str(absence)
     for module in MODULES:

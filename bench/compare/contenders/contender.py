@@ -1,7 +1,7 @@
 """What a contender is: it prepares runs of a case at a setting, to be timed and examined.
 
 To add one, write a file beside this one with a list `CONTENDERS`, and add its name to the list in
-`__init__.py`. A C++ contender is a .cpp file and a line in `compiled.py`.
+`__init__.py`. A C++ contender is a .cpp file and a line in `programs.py`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import gc
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from cases import Array, Case
 
@@ -31,7 +31,12 @@ class Outcome:
     said: str = ""
 
 
-class Run(Protocol):
+class Timed(Protocol):
+    def burst(self, seconds: float) -> list[float]:
+        """Call for about that long and list each call's seconds; a first of several warms up."""
+
+
+class Run(Timed, Protocol):
     """A case at a setting; everything that can be built beforehand is built.
 
     `compile_seconds` is how long a user waits for compilation in each process; None if nothing is
@@ -40,9 +45,6 @@ class Run(Protocol):
 
     @property
     def compile_seconds(self) -> float | None: ...
-
-    def burst(self, seconds: float) -> list[float]:
-        """Call for about that long and list each call's seconds; a first of several warms up."""
 
     def outcome(self) -> Outcome:
         """Solve and return the result; raise RuntimeError with a reason if there are no states."""
@@ -63,9 +65,9 @@ def fixed_steps(longest: float, shortest: float, per_decade: int) -> list[float]
     return steps
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Contender:
-    """A solver: `prepare` makes its run of a case, or raises Unsupported if it cannot solve that.
+    """`prepare` makes a run of a case at a setting, or raises Unsupported if it cannot solve that.
 
     `about` gives version and settings. `sides` are the sides on which the contender takes part: its
     time is that of compiled code, or it includes a call from Python. `settings` are tolerances or
@@ -75,7 +77,7 @@ class Contender:
     name: str
     label: str
     about: str
-    prepare: Callable[[Case, float], Run]
+    prepare: Callable[..., Any]
     sides: tuple[str, ...] = (PYTHON,)
     ours: bool = False
     setting: str = "tolerance"
@@ -91,6 +93,16 @@ def compiled(build: Callable[[], Answer]) -> tuple[Answer, float]:
     """Build, and measure the seconds that this takes."""
     begin = time.perf_counter()
     return build(), time.perf_counter() - begin
+
+
+known: dict[tuple[str, str], tuple[Any, float]] = {}
+
+
+def once(kind: str, case: Case, build: Callable[[], Any]) -> tuple[Any, float]:
+    """Compile what does not depend on the tolerance once for a case."""
+    if (kind, case.name) not in known:
+        known[kind, case.name] = compiled(build)
+    return known[kind, case.name]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,6 @@ no Python runs during a solve.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -17,21 +16,13 @@ import numpy as np
 from cases import Array, Case
 from CyRK import PySolver, cyjit, nbsolve2_ivp, pysolve_ivp
 
-from contenders.contender import Contender, Outcome, PythonRun, compiled
+from contenders.contender import Contender, Outcome, PythonRun, once
 from contenders.equations import fill
 
 # Each of these, among nine methods, is the best somewhere. The last three are for stiff scenes.
 BY_ADDRESS = ("RK45", "DOP853", "Vern7", "LSODA", "RADAU", "BDF")
 BY_FUNCTION = ("RK45", "DOP853")
 TYPES = numba.void(numba.float64[::1], numba.float64, numba.float64[::1])
-known: dict[tuple[str, str], Any] = {}
-
-
-def once(kind: str, case: Case, build: Callable[[], Any]) -> Any:
-    """Build what does not depend on the tolerance, and measure the seconds that this takes."""
-    if (kind, case.name) not in known:
-        known[kind, case.name] = compiled(build)
-    return known[kind, case.name]
 
 
 def prepare_pysolve(method: str, case: Case, tolerance: float) -> PythonRun[Any]:

@@ -130,7 +130,9 @@ def fill(case: Case, compiler: Callable[[Any], Any]) -> Callable[[Any, Any], Non
     return fill_two if case.n == 2 else fill_three
 
 
-def jacobian(case: Case) -> Callable[[float, Array], list[list[float]]] | None:
+def jacobian(
+    case: Case, compiler: Callable[[Any], Any] = lambda function: function
+) -> Callable[[float, Array], list[list[float]]] | None:
     """Make the function of (t, y) that returns the rates' derivatives, (4, 4); None for three rods.
 
     They are derived by hand: M a = r(q, w) gives M da = dr - dM a. The function computes with
@@ -138,18 +140,14 @@ def jacobian(case: Case) -> Callable[[float, Array], list[list[float]]] | None:
     """
     if case.n != 2:
         return None
-    (b1, b2), (k1, k2), (rest1, rest2) = case.damping, case.stiffness, case.rest
-    sin, cos = math.sin, math.cos
+    (b1, b2), (k1, k2) = case.damping, case.stiffness
+    sin, cos, found = math.sin, math.cos, compiler(accelerations(case))
 
     def derivatives(t: float, y: Any) -> list[list[float]]:
         q1, q2, w1, w2 = y
-        tau1 = -b1 * w1 - k1 * (q1 - rest1)
-        tau2 = -b2 * (w2 - w1) - k2 * (q2 - q1 - rest2)
+        a1, a2 = found(q1, q2, w1, w2)
         c, s = 0.5 * cos(q1 - q2), 0.5 * sin(q1 - q2)
-        r1 = 1.5 * GRAVITY * cos(q1) - s * w2 * w2 + (tau1 - tau2)
-        r2 = 0.5 * GRAVITY * cos(q2) + s * w1 * w1 + tau2
         share = 1 / (4 / 9 - c * c)
-        a1, a2 = (r1 / 3 - c * r2) * share, (4 / 3 * r2 - c * r1) * share
         # The right sides of M da = ..., by q1, q2, w1 and w2; dM has -s and s off its diagonal.
         first = [
             -1.5 * GRAVITY * sin(q1) - c * w2 * w2 - k2 - k1 + s * a2,

@@ -1,52 +1,28 @@
-// A contender of forward dynamics prepares calls that compute the accelerations of a scene. Each
-// side is a program of its own, so that the linker does not mix inline functions of two headers or
-// of two builds: a .cpp file that defines `contenders`. forward_dynamics.py speaks to it:
-//
-//   prepare NAME EFFECT n states masses lengths gravity q qd
-//   accelerations CALLS      qdd at the first state
-//   bytes CALLS              heap in use after the preparation of the calls, 0 if unknown
-//   make CALLS COUNT         makes COUNT calls; answers the number of right-hand sides of one call
-//   burst CALLS SECONDS      nanoseconds of a right-hand side, one number for each batch of calls
+// Contenders that compute the accelerations of a chain of rods, in states that the calls go through
+// in turn. The number of states is a power of two. q of the first state is followed by q of the
+// second, and so on; qd likewise.
 #pragma once
 
 #include <span>
 #include <utility>
 
-#include "conversation.hpp"
+#include "program.hpp"
 
 namespace contenders {
 
-// A chain of uniform rods (kg, m, m/s^2) with an effect (effect_parameters.hpp, or "none"), and the
-// states that the calls go through in turn. The number of states is a power of two. q of the first
-// state is followed by q of the second, and so on, in absolute angles from +x towards +y, y down;
-// qd likewise.
-struct Scene {
-  std::vector<double> masses, lengths;
-  double gravity = 0;
-  std::string effect;
-  std::vector<double> q, qd;
+inline constexpr double moment = 0.5;        // s, for laws that depend on time
+inline constexpr double user_damping = 0.1;  // N m s/rad, on the rate of link 2: a user's function
 
-  std::size_t n() const { return masses.size(); }
-  std::size_t states() const { return q.size() / n(); }
-};
-
+// Each call waits for the one before; its parts are right-hand sides. The outcome is qdd (n) at the
+// first state.
 class Calls : public Prepared {
  public:
-  std::string burst(double seconds) final;
-  std::string tell(const std::string& word, std::istream& rest) final;
-  std::size_t bytes = 0;  // of the heap, held since the preparation
+  Calls() { shortest_batch_ = 1e-5; }  // long compared with reading the clock
+  std::string outcome() final { return words(accelerations()); }
 
-  virtual void make(int count) = 0;                 // timed; each call waits for the one before
-  virtual std::vector<double> accelerations() = 0;  // qdd (n) at the first state
-  virtual double right_hand_sides() { return 1; }   // in one call
-
- private:
-  int count_ = 0;  // calls in a batch
+ protected:
+  virtual Numbers accelerations() { throw Unsupported("it says nothing of the accelerations"); }
 };
-
-using PrepareCalls = std::function<std::unique_ptr<Calls>(const Scene&)>;
-Contender forward_dynamics(std::string name, std::string label, std::string about,
-                           PrepareCalls prepare);
 
 // The next state. The acceleration is never NaN here, but the processor has to wait for it, as the
 // next stage of a step has to.
@@ -56,14 +32,14 @@ inline std::size_t next(std::size_t state, double acceleration, std::size_t stat
 }
 
 // Converts angles of links to angles of joints, for all states, and back for one state.
-inline std::vector<double> at_joints(const std::vector<double>& of_links, std::size_t n) {
-  std::vector<double> result = of_links;
+inline Numbers at_joints(const Numbers& of_links, std::size_t n) {
+  Numbers result = of_links;
   for (std::size_t i = 0; i < result.size(); ++i)
     if (i % n > 0) result[i] -= of_links[i - 1];
   return result;
 }
-inline std::vector<double> of_links(std::span<const double> at_joints) {
-  std::vector<double> result(at_joints.begin(), at_joints.end());
+inline Numbers of_links(std::span<const double> at_joints) {
+  Numbers result(at_joints.begin(), at_joints.end());
   for (std::size_t i = 1; i < result.size(); ++i) result[i] += result[i - 1];
   return result;
 }

@@ -1,39 +1,64 @@
 // MuJoCo's forward dynamics at its best, in three ways: mj_forward without its sensors; its parts
 // that a bare chain needs, called one by one; and whole runs of its Runge-Kutta method, with four
-// right-hand sides a step.
-#include <algorithm>
-#include <utility>
+// right-hand sides a step. The word `model` of what is given names the file of the model, which
+// mujoco_models.py makes.
+#include <mujoco/mujoco.h>
 
-#include "effect_parameters.hpp"
+#include <algorithm>
+#include <cmath>
+
 #include "forward_dynamics.hpp"
-#include "mujoco_scene.hpp"
 
 namespace contenders {
 namespace {
 
-constexpr std::size_t longest = 1000;
 constexpr int steps = 50;  // steps in a run
+
+struct Delete {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+const double* wave = nullptr;  // that of the calls that are made now
+
+void damp_second_link(const mjModel* /*model*/, mjData* data) {
+  // The damper depends on the rate of link 2, and thus acts on the angles of both joints.
+  const double couple = -user_damping * (data->qvel[0] + data->qvel[1]);
+  data->qfrc_passive[0] += couple;
+  data->qfrc_passive[1] += couple;
+}
+
+void drive(const mjModel* /*model*/, mjData* data) {
+  data->ctrl[0] = wave[0] * std::sin(wave[1] * data->time + wave[2]);
+}
 
 class MujocoCalls : public Calls {
  public:
-  explicit MujocoCalls(const Scene& scene)
-      : n_(scene.n()),
-        states_(scene.states()),
-        phi_(at_joints(scene.q, n_)),
-        phid_(at_joints(scene.qd, n_)),
-        callbacks_(callbacks_of(scene.effect)),
-        model_(model_of(scene)),
+  explicit MujocoCalls(const Given& given)
+      : n_(given.n()),
+        states_(given["q"].size() / n_),
+        phi_(at_joints(given["q"], n_)),
+        phid_(at_joints(given["qd"], n_)),
+        is_user_(given.words.at("effect") == "user"),
+        model_(mj_loadModel(given.words.at("model").c_str(), nullptr)),
         data_(mj_makeData(model_.get())) {
-    if (model_->nu > 0) data_->ctrl[0] = control_of(scene.effect);
+    for (const auto& [kind, parameters] : given.effects)
+      for (const auto& [name, numbers] : parameters) {
+        if (name == "constant" || name == "pd.reference") data_->ctrl[0] = numbers[0];
+        if (name == "sinusoid.amplitude") wave_ = {numbers[0], 0, 0};
+        if (name == "sinusoid.angular_frequency") wave_[1] = numbers[0];
+        if (name == "sinusoid.phase") wave_[2] = numbers[0];
+      }
   }
 
   void make(int count) override {
     // Other calls of this program may need other callbacks.
-    mjcb_passive = callbacks_.passive;
-    mjcb_control = callbacks_.control;
+    mjcb_passive = is_user_ ? damp_second_link : nullptr;
+    mjcb_control = wave_.empty() ? nullptr : drive;
+    wave = wave_.data();
     for (; count > 0; --count) state_ = next(state_, call(state_), states_);
   }
-  std::vector<double> accelerations() override {
+  Numbers accelerations() override {
     state_ = 0;
     make(1);
     return of_links({found(), n_});
@@ -50,10 +75,11 @@ class MujocoCalls : public Calls {
   }
 
   std::size_t n_, states_, state_ = 0;
-  std::vector<double> phi_, phid_;
-  Callbacks callbacks_;
-  Model model_;
-  Data data_;
+  Numbers phi_, phid_;
+  Numbers wave_;  // amplitude, angular frequency and phase of a motor
+  bool is_user_;
+  std::unique_ptr<mjModel, Delete> model_;
+  std::unique_ptr<mjData, Delete> data_;
 };
 
 class Forward : public MujocoCalls {
@@ -67,8 +93,9 @@ class Forward : public MujocoCalls {
 
 class Parts : public MujocoCalls {
  public:
-  explicit Parts(const Scene& scene) : MujocoCalls(scene) {
-    if (scene.effect != "none") throw Unsupported("its parts are those of a bare chain");
+  explicit Parts(const Given& given) : MujocoCalls(given) {
+    if (given.words.at("effect") != "none")
+      throw Unsupported("its parts are those of a bare chain");
   }
 
  private:
@@ -91,29 +118,22 @@ class Parts : public MujocoCalls {
 
 class WholeRun : public MujocoCalls {
   using MujocoCalls::MujocoCalls;
-  double right_hand_sides() override { return 4.0 * steps; }
+  double parts() override { return 4.0 * steps; }
   double call(std::size_t /*state*/) override {
     set(0);
     data_->time = 0;
     for (int i = 0; i < steps; ++i) mj_step(model_.get(), data_.get());
     return data_->qpos[n_ - 1];
   }
-  std::vector<double> accelerations() override {
-    throw Unsupported("a run says nothing of the accelerations");
-  }
+  Numbers accelerations() override { return Calls::accelerations(); }
 };
 
 template <class Kind>
 Contender entry(const std::string& word, const std::string& label, const std::string& about) {
-  return forward_dynamics(
-      "mujoco_" + word, "MuJoCo " + label,
-      std::string("MuJoCo ") + mj_versionString() + " " + about + ", all else disabled, " +
-          CONTENDER_BUILD,
-      [](const Scene& scene) -> std::unique_ptr<Calls> {
-        if (scene.n() > longest)
-          throw Unsupported("its mass matrix is dense, and its time grows with n^3");
-        return std::make_unique<Kind>(scene);
-      });
+  return {"mujoco_" + word, "MuJoCo " + label,
+          std::string("MuJoCo ") + mj_versionString() + " " + about + ", all else disabled, " +
+              CONTENDER_BUILD,
+          [](const Given& given) { return std::make_unique<Kind>(given); }};
 }
 
 }  // namespace

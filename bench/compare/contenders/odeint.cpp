@@ -42,7 +42,7 @@ struct CountedRates : Rates<Rods> {
 
 struct Dopri5 {
   template <class System, class State>
-  static void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,
+  static void integrate(System& rates, State y, const Numbers& times, double tolerance,
                         State* out) {
     auto stepper = ode::make_dense_output(tolerance, tolerance, ode::runge_kutta_dopri5<State>());
     stepper.initialize(y, times.front(), 0.5 * std::pow(tolerance, 0.2));
@@ -59,7 +59,7 @@ struct Dopri5 {
 // after it has the length that the control wanted before.
 struct Fehlberg78 {
   template <class System, class State>
-  static void integrate(System& rates, State y, const std::vector<double>& times, double tolerance,
+  static void integrate(System& rates, State y, const Numbers& times, double tolerance,
                         State* out) {
     auto stepper = ode::make_controlled(tolerance, tolerance, ode::runge_kutta_fehlberg78<State>());
     double now = times.front(), wished = 0.5 * std::pow(tolerance, 0.125);
@@ -86,9 +86,9 @@ struct Fehlberg78 {
 template <class Method, class Rods>
 class OdeintRun : public Run {
  public:
-  OdeintRun(const Rods& rods, const Case& given, double tolerance)
-      : rates_{rods}, times_(given.times), tolerance_(tolerance), out_(given.times.size()) {
-    std::copy_n(given.start.begin(), Rods::size, start_.begin());
+  OdeintRun(const Rods& rods, const Given& given)
+      : rates_{rods}, times_(given["times"]), tolerance_(given["setting"][0]), out_(times_.size()) {
+    std::copy_n(given["start"].begin(), Rods::size, start_.begin());
   }
   void solve() override { Method::integrate(rates_, start_, times_, tolerance_, out_.data()); }
   std::span<const double> states() const override {
@@ -103,21 +103,20 @@ class OdeintRun : public Run {
  private:
   Rates<Rods> rates_;
   StateOf<Rods> start_{};
-  std::vector<double> times_;
+  Numbers times_;
   double tolerance_;
   std::vector<StateOf<Rods>> out_;
 };
 
 template <class Method>
 Contender odeint(const std::string& name, const std::string& method, const std::string& output) {
-  return solver("odeint_" + name, "Boost.odeint " + method + ", C++",
-                "Boost.odeint " BOOST_LIB_VERSION ", " + output + ", " CONTENDER_BUILD,
-                [](const Case& given, double tolerance) {
-                  return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
-                    using Rods = std::decay_t<decltype(rods)>;
-                    return std::make_unique<OdeintRun<Method, Rods>>(rods, given, tolerance);
-                  });
-                });
+  return {"odeint_" + name, "Boost.odeint " + method + ", C++",
+          "Boost.odeint " BOOST_LIB_VERSION ", " + output + ", " CONTENDER_BUILD,
+          [](const Given& given) {
+            return with_rods(given, [&]<class Rods>(const Rods& rods) -> std::unique_ptr<Run> {
+              return std::make_unique<OdeintRun<Method, Rods>>(rods, given);
+            });
+          }};
 }
 
 }  // namespace

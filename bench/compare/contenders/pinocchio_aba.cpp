@@ -28,15 +28,16 @@ using Hinge = Hinges<double, 0>::JointModelRZ;
 
 constexpr std::size_t longest = 200;
 
-Model model_of(const Scene& scene) {
+Model model_of(const Given& given) {
   Model model;
-  model.gravity.linear() = Eigen::Vector3d(0, scene.gravity, 0);
+  model.gravity.linear() = Eigen::Vector3d(0, given["gravity"][0], 0);
   pin::JointIndex joint = 0;
-  for (std::size_t i = 0; i < scene.n(); ++i) {
+  for (std::size_t i = 0; i < given.n(); ++i) {
     pin::SE3 placement = pin::SE3::Identity();
-    if (i > 0) placement.translation()[0] = scene.lengths[i - 1];
+    if (i > 0) placement.translation()[0] = given["lengths"][i - 1];
     joint = model.addJoint(joint, Hinge(), placement, std::to_string(i));
-    const double m = scene.masses[i], length = scene.lengths[i], inertia = m * length * length / 12;
+    const double m = given["masses"][i], length = given["lengths"][i],
+                 inertia = m * length * length / 12;
     const Eigen::Matrix3d about_center = Eigen::Vector3d(0, inertia, inertia).asDiagonal();
     const Eigen::Vector3d center(length / 2, 0, 0);
     model.appendBodyToJoint(joint, pin::Inertia(m, center, about_center), pin::SE3::Identity());
@@ -46,13 +47,13 @@ Model model_of(const Scene& scene) {
 
 class PinocchioCalls : public Calls {
  public:
-  PinocchioCalls(const Scene& scene, pin::Convention convention)
-      : n_(scene.n()),
-        states_(scene.states()),
-        phi_(at_joints(scene.q, n_)),
-        phid_(at_joints(scene.qd, n_)),
+  PinocchioCalls(const Given& given, pin::Convention convention)
+      : n_(given.n()),
+        states_(given["q"].size() / n_),
+        phi_(at_joints(given["q"], n_)),
+        phid_(at_joints(given["qd"], n_)),
         convention_(convention),
-        model_(model_of(scene)),
+        model_(model_of(given)),
         data_(model_),
         tau_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_))) {
     data_.kinematic_hessians.resize(6, 0, 0);
@@ -60,7 +61,7 @@ class PinocchioCalls : public Calls {
   void make(int count) override {
     for (; count > 0; --count) state_ = next(state_, evaluate(state_)[last_], states_);
   }
-  std::vector<double> accelerations() override {
+  Numbers accelerations() override {
     const Eigen::VectorXd& found = evaluate(0);
     return of_links({found.data(), n_});
   }
@@ -74,7 +75,7 @@ class PinocchioCalls : public Calls {
 
   std::size_t n_, states_, state_ = 0;
   Eigen::Index last_ = static_cast<Eigen::Index>(n_) - 1;
-  std::vector<double> phi_, phid_;
+  Numbers phi_, phid_;
   pin::Convention convention_;
   Model model_;
   Data data_;
@@ -82,17 +83,17 @@ class PinocchioCalls : public Calls {
 };
 
 Contender entry(const std::string& word, pin::Convention convention) {
-  return forward_dynamics("pinocchio_" + word + "_" CONTENDER_SUFFIX,
-                          "Pinocchio ABA, " + word + " frames, " CONTENDER_ARCHITECTURE,
-                          "Pinocchio " PINOCCHIO_VERSION " aba, Convention of " + word +
-                              " frames, collection of one joint type, " CONTENDER_BUILD,
-                          [convention](const Scene& scene) -> std::unique_ptr<Calls> {
-                            if (scene.effect != "none")
-                              throw Unsupported("its ABA has no effects of its own");
-                            if (scene.n() > longest)
-                              throw Unsupported("its Data holds 6 n^3 doubles, 0.4 GB at n = 200");
-                            return std::make_unique<PinocchioCalls>(scene, convention);
-                          });
+  return {"pinocchio_" + word + "_" CONTENDER_SUFFIX,
+          "Pinocchio ABA, " + word + " frames, " CONTENDER_ARCHITECTURE,
+          "Pinocchio " PINOCCHIO_VERSION " aba, Convention of " + word +
+              " frames, collection of one joint type, " CONTENDER_BUILD,
+          [convention](const Given& given) {
+            if (given.words.at("effect") != "none")
+              throw Unsupported("its ABA has no effects of its own");
+            if (given.n() > longest)
+              throw Unsupported("its Data holds 6 n^3 doubles, 0.4 GB at n = 200");
+            return std::make_unique<PinocchioCalls>(given, convention);
+          }};
 }
 
 }  // namespace

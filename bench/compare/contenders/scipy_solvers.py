@@ -12,7 +12,7 @@ import scipy
 from cases import Array, Case
 from scipy.integrate import solve_ivp
 
-from contenders.contender import Contender, Outcome, PythonRun, compiled
+from contenders.contender import Contender, Outcome, PythonRun, once
 from contenders.equations import fill, jacobian, rates
 
 METHODS = ("RK45", "DOP853", "LSODA", "Radau")
@@ -20,7 +20,6 @@ IMPLICIT = ("LSODA", "Radau")
 # Radau also calls with columns of a matrix, whose numbers are not contiguous.
 TYPES = [numba.void(numba.float64[::1], y) for y in (numba.float64[::1], numba.float64[:])]
 Rates = Callable[[float, Array], Any]
-known: dict[str, tuple[Any, float]] = {}
 
 
 def in_python(case: Case) -> tuple[Rates, Any, None]:
@@ -32,15 +31,13 @@ def by_numba(case: Case) -> tuple[Rates, Any, float]:
 
     def build() -> tuple[Any, Any]:
         filled = numba.njit(TYPES)(fill(case, numba.njit))
-        derivatives: Any = jacobian(case)
+        derivatives: Any = jacobian(case, numba.njit)
         if derivatives is not None:
             derivatives = numba.njit(derivatives)
             derivatives(0.0, case.start)
         return filled, derivatives
 
-    if case.name not in known:
-        known[case.name] = compiled(build)
-    (filled, derivatives), seconds = known[case.name]
+    (filled, derivatives), seconds = once("SciPy", case, build)
     size = 2 * case.n
 
     def rates_of(t: float, y: Array) -> Array:

@@ -1,50 +1,41 @@
-// Contenders that solve cases. A program of them defines `contenders` and is named in
-// ../CMakeLists.txt and in compiled.py, which speaks to it:
-//
-//   prepare NAME SETTING n masses lengths gravity damping stiffness rest controller start n_t times
-//   outcome RUN              right-hand sides, steps, then the states; or `failed` and the reason
-//   burst RUN SECONDS        nanoseconds of each call; the first of several only warms up
+// Contenders that solve cases. Beside the chain of rods, a case has its start, q_1..q_n and
+// qd_1..qd_n, its times, which increase, and a setting: a tolerance, both relative and absolute, or
+// a fixed step in s. The torque -stiffness (phi - rest) - damping dphi/dt acts in joint j, which is
+// given both by these numbers and as pendcore's effects.
 #pragma once
 
 #include <span>
 #include <utility>
 
-#include "conversation.hpp"
+#include "program.hpp"
 
 namespace contenders {
-
-// A chain of uniform rods: masses (kg), lengths (m), gravity (m/s^2). The torque -stiffness
-// (phi - rest) - damping dphi/dt acts in joint j. If `controller` is true it belongs to a motor,
-// otherwise to a spring and a damper. start = q_1..q_n, qd_1..qd_n; times increase.
-struct Case {
-  std::vector<double> masses, lengths;
-  double gravity = 0;
-  std::vector<double> damping, stiffness, rest;
-  bool controller = false;
-  std::vector<double> start, times;
-};
 
 // The cost of one solve: right-hand sides and attempted steps; < 0 if they are not counted.
 struct Counts {
   long long evaluations = -1, steps = -1;
 };
 
-// A case at a setting: a tolerance, both relative and absolute, or a fixed step in s. `solve` is
-// timed; states, counts and the failure may be asked for afterwards.
+// `solve` is timed; states, counts and the failure may be asked for afterwards. The outcome has the
+// counts and then the states, row-major, times x 2n; or it is `failed` and the reason.
 class Run : public Prepared {
  public:
-  std::string burst(double seconds) final;
-  std::string tell(const std::string& word, std::istream& rest) final;
+  void make(int count) final {
+    for (; count > 0; --count) solve();
+  }
+  std::string outcome() final {
+    solve();
+    const auto found = states();
+    if (found.empty()) return "failed " + failure();
+    const Counts counted = counts();
+    return std::to_string(counted.evaluations) + ' ' + std::to_string(counted.steps) +
+           words({found.begin(), found.end()});
+  }
 
   virtual void solve() = 0;
-  virtual std::span<const double> states()
-      const = 0;  // row-major, times x 2n; empty if the solve failed
+  virtual std::span<const double> states() const = 0;  // empty if the solve failed
   virtual Counts counts() = 0;
   virtual std::string failure() const { return "it did not reach the end"; }
 };
-
-// `prepare` throws Unsupported for a case that the contender does not support.
-using PrepareRun = std::function<std::unique_ptr<Run>(const Case&, double setting)>;
-Contender solver(std::string name, std::string label, std::string about, PrepareRun prepare);
 
 }  // namespace contenders

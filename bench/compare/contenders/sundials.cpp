@@ -48,12 +48,12 @@ void be_silent(int, const char*, const char*, char*, void*) {}
 template <class Rods>
 class SundialsRun : public Run {
  public:
-  SundialsRun(const Rods& rods, const Case& given)
-      : rods_(rods), times_(given.times), states_(Rods::size * given.times.size()) {
+  SundialsRun(const Rods& rods, const Given& given)
+      : rods_(rods), times_(given["times"]), states_(Rods::size * given["times"].size()) {
     done(SUNContext_Create(nullptr, &context_));
     start_ = made(N_VNew_Serial, static_cast<sunindextype>(Rods::size), context_);
     y_ = made(N_VNew_Serial, static_cast<sunindextype>(Rods::size), context_);
-    std::memcpy(NV_DATA_S(start_), given.start.data(), sizeof(double) * Rods::size);
+    std::memcpy(NV_DATA_S(start_), given["start"].data(), sizeof(double) * Rods::size);
   }
   ~SundialsRun() override {
     N_VDestroy(y_);
@@ -85,7 +85,7 @@ class SundialsRun : public Run {
   N_Vector start_ = nullptr, y_ = nullptr;
 
  private:
-  std::vector<double> times_, states_;
+  Numbers times_, states_;
   int flag_ = 0;
 };
 
@@ -99,13 +99,12 @@ class ErkRun : public SundialsRun<Rods> {
   using Base = SundialsRun<Rods>;
 
  public:
-  ErkRun(const Rods& rods, const Case& given, double tolerance, Table table)
-      : Base(rods, given), table_(table) {
+  ErkRun(const Rods& rods, const Given& given, Table table) : Base(rods, given), table_(table) {
     memory_ = made(ERKStepCreate, &rates<Rods>, this->begin(), this->start_, this->context_);
     done(ERKStepSetErrHandlerFn(memory_, be_silent, nullptr));
     done(ERKStepSetUserData(memory_, &this->rods_));
     done(ERKStepSetTableNum(memory_, table.id));
-    done(ERKStepSStolerances(memory_, tolerance, tolerance));
+    done(ERKStepSStolerances(memory_, given["setting"][0], given["setting"][0]));
     done(ERKStepSetMaxNumSteps(memory_, most_steps));
     done(ERKStepSetInterpolantDegree(memory_, table.stops_at_times ? 1 : 4));
   }
@@ -143,12 +142,12 @@ class CvodeRun : public SundialsRun<Rods> {
   using Base = SundialsRun<Rods>;
 
  public:
-  CvodeRun(const Rods& rods, const Case& given, double tolerance, int family) : Base(rods, given) {
+  CvodeRun(const Rods& rods, const Given& given, int family) : Base(rods, given) {
     memory_ = made(CVodeCreate, family, this->context_);
     done(CVodeSetErrHandlerFn(memory_, be_silent, nullptr));
     done(CVodeInit(memory_, &rates<Rods>, this->begin(), this->start_));
     done(CVodeSetUserData(memory_, &this->rods_));
-    done(CVodeSStolerances(memory_, tolerance, tolerance));
+    done(CVodeSStolerances(memory_, given["setting"][0], given["setting"][0]));
     done(CVodeSetMaxNumSteps(memory_, most_steps));
     if (family == CV_ADAMS) {
       iteration_ = made(SUNNonlinSol_FixedPoint, this->start_, 0, this->context_);
@@ -195,15 +194,14 @@ class CvodeRun : public SundialsRun<Rods> {
 template <template <class> class Kind, class Choice>
 Contender sundials(const std::string& name, const std::string& label, const std::string& how,
                    Choice choice) {
-  return solver(name, label + ", C++",
-                "SUNDIALS " SUNDIALS_VERSION " as Debian builds it, " + how +
-                    "; right-hand side: " CONTENDER_BUILD,
-                [choice](const Case& given, double tolerance) {
-                  return with_rods(given, [&](const auto& rods) -> std::unique_ptr<Run> {
-                    using Rods = std::decay_t<decltype(rods)>;
-                    return std::make_unique<Kind<Rods>>(rods, given, tolerance, choice);
-                  });
-                });
+  return {name, label + ", C++",
+          "SUNDIALS " SUNDIALS_VERSION " as Debian builds it, " + how +
+              "; right-hand side: " CONTENDER_BUILD,
+          [choice](const Given& given) {
+            return with_rods(given, [&]<class Rods>(const Rods& rods) -> std::unique_ptr<Run> {
+              return std::make_unique<Kind<Rods>>(rods, given, choice);
+            });
+          }};
 }
 
 }  // namespace

@@ -36,13 +36,13 @@ struct TwoRods {
 // The same rods with springs and dampers in the joints.
 struct LoadedRods : TwoRods {
   double b1, b2, k1, k2, rest1, rest2;
-  explicit LoadedRods(const Case& given)
-      : b1(given.damping[0]),
-        b2(given.damping[1]),
-        k1(given.stiffness[0]),
-        k2(given.stiffness[1]),
-        rest1(given.rest[0]),
-        rest2(given.rest[1]) {}
+  explicit LoadedRods(const Given& given)
+      : b1(given["damping"][0]),
+        b2(given["damping"][1]),
+        k1(given["stiffness"][0]),
+        k2(given["stiffness"][1]),
+        rest1(given["rest"][0]),
+        rest2(given["rest"][1]) {}
   void operator()(const double* y, double* f) const {
     rates(y, f, -k1 * (y[0] - rest1) - b1 * y[2], -k2 * (y[1] - y[0] - rest2) - b2 * (y[3] - y[2]));
   }
@@ -90,15 +90,14 @@ struct ThreeRods {
 
 // Calls `make` with the rods of the case.
 template <class Make>
-auto with_rods(const Case& given, Make make) {
-  const auto all = [](const std::vector<double>& numbers, double value) {
-    return std::ranges::all_of(numbers, [value](double number) { return number == value; });
+auto with_rods(const Given& given, Make make) {
+  const auto all = [&given](const char* name, double value) {
+    return std::ranges::all_of(given[name], [value](double number) { return number == value; });
   };
-  const bool unit = all(given.masses, 1.0) && all(given.lengths, 1.0) && given.gravity == gravity;
-  const bool bare = all(given.damping, 0.0) && all(given.stiffness, 0.0);
-  const std::size_t n = given.masses.size();
-  if (unit && n == 2) return bare ? make(TwoRods()) : make(LoadedRods(given));
-  if (unit && bare && n == 3) return make(ThreeRods());
+  const bool unit = all("masses", 1.0) && all("lengths", 1.0) && all("gravity", gravity);
+  const bool bare = all("damping", 0.0) && all("stiffness", 0.0);
+  if (unit && given.n() == 2) return bare ? make(TwoRods()) : make(LoadedRods(given));
+  if (unit && bare && given.n() == 3) return make(ThreeRods());
   throw Unsupported(
       "its right-hand sides are written for two or three rods of 1 kg and 1 m, the joints of "
       "three without torque");

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from math import cos, pi, sin
 from typing import Any
 
 import mpmath
 import numpy as np
+from cases import Array
 from mpmath import ellipk, mp, mpf, sqrt
+from trajectory_error import energy
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene
-from hard_cases.rods import Array, G, two_rods
+from hard_cases.programs import HANGING, UPRIGHT, Motion, Scene, crossing
+from hard_cases.rods import G, two_rods
 
 
 class Drift(Scene):
@@ -23,20 +25,13 @@ class Drift(Scene):
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 2000.0)
     times = np.linspace(0, span[1], 201)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
-    system = ("textbook", ())
     settings = {"pendcore": {"t_eval": times}, "mujoco": {"every": times[1]}}  # noqa: RUF012
-
-    def energy(self, states: Any) -> Array:
-        """Return the energy, J, in states (..., 4)."""
-        q1, q2, w1, w2 = np.moveaxis(np.asarray(states), -1, 0)
-        kinetic = 2 / 3 * w1**2 + w2**2 / 6 + np.cos(q1 - q2) * w1 * w2 / 2
-        return np.asarray(kinetic - G * (1.5 * np.sin(q1) + 0.5 * np.sin(q2)))
 
     def judge(self, states: Any, words: str) -> Outcome:
         """Judge the largest drift at the times, as a share of the energy at the start."""
-        at_start = self.energy((*self.start, *self.speeds))
-        error = float(np.abs(self.energy(states) / at_start - 1).max())
-        return Outcome(error=error, said=words)
+        q, qd = np.split(np.vstack([(*self.start, *self.speeds), states]), 2, axis=1)
+        found = energy(q, qd, np.ones(2), np.ones(2), G)
+        return Outcome(error=float(np.abs(found / found[0] - 1).max()), said=words)
 
     def judged(self, motion: Motion) -> Outcome:
         return self.judge(motion.y, motion.words)
@@ -98,10 +93,6 @@ class ShakenPivot(Scene):
         shaking = fx.Sinusoid(amplitude=self.eps, angular_frequency=self.w, phase=pi / 2)
         return [fx.DrivenPivot(y=shaking)]
 
-    @property
-    def system(self) -> tuple[str, Sequence[float]]:  # type: ignore[override]
-        return "shaken", (G, self.eps, self.w)
-
     def rates(self, t: float, y: Array) -> tuple[float, float]:
         return y[1], 1.5 * (G - self.eps * self.w**2 * cos(self.w * t)) * sin(y[0])
 
@@ -119,22 +110,13 @@ class Upright(Scene):
     links, mass, gravity, hanging = 2, 1.0, G, False
     start, speeds, span = (UPRIGHT + 1e-9,) * 2, (0.0, 0.0), (0.0, 6.0)
     rates = staticmethod(two_rods())  # type: ignore[assignment]
-    system = ("textbook", ())
     settings = {"scipy": {"dense_output": True}}  # noqa: RUF012
 
     @cache  # noqa: B019
     def fall_time(self) -> float:
         """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double start."""
         with mp.workdps(25):
-            g, cosine, sine = mpf(G), mpmath.cos, mpmath.sin
-
-            def rates(_: Any, y: Any) -> list[Any]:
-                a12, h = cosine(y[0] - y[1]) / 2, sine(y[0] - y[1]) / 2
-                r1 = 3 * g * cosine(y[0]) / 2 - h * y[3] ** 2
-                r2 = g * cosine(y[1]) / 2 + h * y[2] ** 2
-                det = mpf(4) / 9 - a12**2
-                return [y[2], y[3], (r1 / 3 - a12 * r2) / det, (4 * r2 / 3 - a12 * r1) / det]
-
+            rates = two_rods(of=mpmath, one=mpf(1))
             motion = mpmath.odefun(rates, 0, [*map(mpf, self.start), 0, 0])
 
             def off(t: Any) -> Any:
@@ -174,7 +156,15 @@ class Upright(Scene):
         return self.judge(float(motion.t[k] - dt * (off[k] - 1) / (off[k] - off[k - 1])))
 
     def odeint(self, **how: Any) -> Outcome:
-        return self.judge(self.task(**how).ask("fallen", UPRIGHT, self.span[1])["t"][0])
+        steps = self.steps_of_odeint(**how)
+
+        def off(y: Any) -> float:
+            return float(np.abs(np.array(y[:2]) - UPRIGHT).max()) - 1
+
+        low, high = steps.step()
+        while off(steps.at(high)) < 0 and high < self.span[1]:
+            low, high = steps.step()
+        return self.judge(crossing(steps, low, high, off))
 
 
 class Separatrix(Scene):
@@ -183,7 +173,6 @@ class Separatrix(Scene):
     mass, gravity = 1.0, G
     amplitude = float(2 * np.arcsin(0.999999))
     zero, sign, start = HANGING, -1.0, (amplitude,)
-    system = ("pendulum", [G])
     settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
     with mp.workdps(30):
         modulus = mpmath.sin(mpf(amplitude) / 2)

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from cases import Array
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import Motion, Scene
-from hard_cases.rods import Array, G, two_rods
+from hard_cases.rods import G, two_rods
 
 
 class Ending(Scene):
@@ -52,7 +53,6 @@ class NotANumber(Ending):
     """A couple of the user's own that is no number beyond an angle, which is reached at 0.5 s."""
 
     span = (0.0, 2.0)
-    system = ("square_root", ())
 
     def law(self, q: Any) -> Any:
         with np.errstate(invalid="ignore"):
@@ -72,7 +72,6 @@ class BlowUp(Ending):
     """Damping of the wrong sign, w' = w^3: the rate is infinite after a finite time."""
 
     near = 1e-3
-    system = ("cubic", ())
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -98,7 +97,6 @@ class LateStart(Scene):
     start, speeds = (0.3, 0.3), (0.0, 0.0)
     span = (1e17, 1e17 + 160)  # ten units in the last place
     rates = staticmethod(two_rods(of=np))  # type: ignore[assignment]
-    system = ("textbook", ())
 
     def pendcore(self, **how: Any) -> Outcome:
         found = self.by_pendcore(**how).raw

@@ -7,18 +7,17 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from cases import Array
 from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
 
 from hard_cases.outcome import Outcome
-from hard_cases.programs import HANGING, Motion, Scene
-from hard_cases.rods import Array
+from hard_cases.programs import HANGING, Motion, Scene, crossing
 
 
 class Bounces(Scene):
     """A rod pressed against a stop, with bounces that accumulate and end."""
 
     pressing, restitution, capture = 2.0, 0.8, 1e-9
-    system = ("constant", [-pressing])
     start, span = (0.4,), (0.0, 8.0)
     first = float(np.sqrt(2 * pressing * start[0]))  # speed of the first impact
     t_last = first / pressing * (1 + 2 * restitution / (1 - restitution))
@@ -41,6 +40,9 @@ class Bounces(Scene):
 
     def torque(self, t: float) -> float:
         return -self.pressing
+
+    def rates(self, t: float, y: Array) -> list[float]:
+        return [y[1], -self.pressing]
 
     def judge(self, end: float, t_last: float | None, more: str = "", traced: Any = ()) -> Outcome:
         """Judge where the rod is at the end (exactly 0), and when it came to rest.
@@ -79,8 +81,8 @@ class Bounces(Scene):
         while t < end:
             flight = 2 * y[1] / self.pressing if guarded and t > 0 else np.inf
             sol = solve_ivp(
-                lambda _, y: [y[1], -self.pressing], (t, end), y, events=hits, rtol=1e-11,
-                atol=1e-13, max_step=flight / 4, dense_output=True,
+                self.rates, (t, end), y, events=hits, rtol=1e-11, atol=1e-13,
+                max_step=flight / 4, dense_output=True,
             )  # fmt: skip
             here = (t <= self.traced) & (sol.t[-1] >= self.traced)
             if here.any():
@@ -94,18 +96,9 @@ class Bounces(Scene):
             y = [0.0, speed]
         return self.judge(y[0], None, traced=traced)
 
-    def model(self, dt: float, integrator: str, **joint: Any) -> Any:
-        """Model the stop as a stiff spring and damper that together give the restitution."""
-        stiffness = (0.1 / dt) ** 2  # half a contact takes thirty steps
-        logarithm = np.log(self.restitution)
-        damping = -2 * logarithm / np.hypot(np.pi, logarithm) * np.sqrt(stiffness)
-        limit = {"limited": "true", "range": "0 1000", "solimplimit": "0.9999 0.9999 0.001"}
-        limit["solreflimit"] = f"{-stiffness} {-damping}"
-        model = super().model(dt, integrator, **limit)
-        model.jnt_range[0] = [0.0, 1e3]
-        return model
-
     def mujoco(self, dt: float, **how: Any) -> Outcome:
+        """Model the stop as a stiff spring and damper that together give the restitution."""
+        self.stiffness = (0.1 / dt) ** 2  # half a contact takes thirty steps
         motion = self.by_mujoco(dt, **how)
         q, qd = motion.y.T
         moving = np.flatnonzero(np.abs(qd) > 1e-3)
@@ -115,10 +108,32 @@ class Bounces(Scene):
         more = f" (as far as the rate is below 1e-3 rad/s); first rise {rise:+.1%}"
         return self.judge(float(q[-1]), last, more, motion.at(self.traced)[:, 0])
 
+    def model(self) -> Any:
+        spec, logarithm = super().model(), np.log(self.restitution)
+        damping = -2 * logarithm / np.hypot(np.pi, logarithm) * np.sqrt(self.stiffness)
+        joint = spec.joints[0]
+        joint.limited, joint.range = True, [0.0, 1e3]
+        joint.solimp_limit[:3] = [0.9999, 0.9999, 0.001]
+        joint.solref_limit = [-self.stiffness, -damping]
+        return spec
+
     def odeint(self, **how: Any) -> Outcome:
-        task = self.task(**how, first_step=0.0)
-        told = task.ask("bounces", self.span[1], self.restitution, self.capture)
-        return self.judge(told["q"][0], told["t"][0] if told["t"][0] > 0 else None)
+        t, y = 0.0, [*self.start, *self.speeds]
+        while t < self.span[1]:
+            flight = y[1] if y[1] > 0 else 1.0  # it takes 2 y[1]/2 s: begin within it
+            steps = self.steps_of_odeint(**how, y=y, t=t, first_step=0.25 * flight)
+            low, high = steps.step()
+            while steps.at(high)[0] > 0 and high < self.span[1]:
+                low, high = steps.step()
+            if steps.at(high)[0] > 0:
+                break
+            # The start of a flight is on the stop.
+            t = crossing(steps, low, high, lambda y: 1.0 if y[0] == 0 else y[0])
+            speed = -self.restitution * steps.at(t)[1]
+            if speed < self.capture:
+                return self.judge(0.0, t)
+            y = [0.0, speed]
+        return self.judge(y[0], None)
 
 
 class TwoRoots(Scene):
@@ -128,7 +143,6 @@ class TwoRoots(Scene):
     mark = 0.99999  # rad from the vertical
     shown = 25.0  # ms; the figure shows this much before and after a turn
     zero, sign, start = HANGING, -1.0, (-amplitude,)
-    system = ("pendulum", [gravity])
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -197,5 +211,16 @@ class TwoRoots(Scene):
         return self.judge(times, motion.t)
 
     def odeint(self, longest: float = 1e9, **how: Any) -> Outcome:
-        told = self.task(**how).ask("passages", self.mark, longest, self.span[1])
-        return self.judge(told["t"], ())
+        steps = self.steps_of_odeint(longest, **how)
+
+        def past(y: Sequence[float]) -> float:
+            return y[0] - self.mark
+
+        found, before, high = [], -1.0, 0.0
+        while high < self.span[1]:
+            low, high = steps.step()
+            now = past(steps.at(high))
+            if before * now < 0:
+                found.append(crossing(steps, low, high, past))
+            before = now
+        return self.judge(found, ())

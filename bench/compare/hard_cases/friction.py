@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
+from cases import Array
 from dense_chain import DenseChain, joints
 from hybrid_chain import HybridChain
 from mpmath import mp, mpf
@@ -15,24 +17,42 @@ from stick_slip import DIGITS, Hum, slides
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene
-from hard_cases.rods import Array, G
+from hard_cases.rods import G, two_rods
 
 
-class HeldRod(Scene):
+class RubbedRod(Scene):
+    """One rod under a torque and friction with a sign that is smoothed over a rate."""
+
+    friction, smoothed = 0.0, 1.0
+    translated = ("dry_joint_friction",)
+
+    def torques(self, t: Any, q: Any) -> tuple[Any, Any, Any]:
+        """Return the torque, and its derivatives by t and q."""
+        raise NotImplementedError
+
+    def rates(self, t: float, y: Array) -> list[float]:
+        return [y[1], self.torques(t, y[0])[0] - self.friction * np.tanh(y[1] / self.smoothed)]
+
+    def derivatives(self, t: float, y: Array) -> tuple[Any, Any]:
+        _, by_t, by_q = self.torques(t, y[0])
+        slope = -self.friction / self.smoothed * (1 - np.tanh(y[1] / self.smoothed) ** 2)
+        return [[0.0, 1.0], [by_q, slope]], [0.0, by_t]
+
+
+class HeldRod(RubbedRod):
     """A rod that friction holds at 30 degrees for a million seconds."""
 
     gravity, start, span = 9.81, (np.pi / 6,), (0.0, 1e6)
     weight = 1.5 * 9.81
     friction = float(2 * weight * np.cos(start[0]))
-    joint = f'frictionloss="{friction!r}"'
-    system = ("held", [friction, 1e-6, weight])
+    smoothed = 1e-6
     traced = np.geomspace(1e-2, span[1], 161)  # s, for the figure
 
     def effects(self, fx: Any) -> list[Any]:
         return [fx.DryJointFriction(joint=1, coulomb=self.friction)]
 
-    def rates(self, t: float, y: Array) -> list[float]:
-        return [y[1], self.weight * np.cos(y[0]) - self.friction * np.tanh(y[1] / 1e-6)]
+    def torques(self, t: Any, q: Any) -> tuple[Any, Any, Any]:
+        return self.weight * np.cos(q), 0.0, -self.weight * np.sin(q)
 
     def moved(self, by: float, more: str = "", traced: Any = ()) -> Outcome:
         """Judge how far the rod has moved at the end; `traced` has its way at the traced times."""
@@ -73,14 +93,17 @@ class HeldRod(Scene):
         return {"t": self.traced.tolist()}
 
 
-class StickSlip(Scene):
+class StickSlip(RubbedRod):
     """A rod under a constant torque and a hum, which moves in a staircase of slides and rests."""
 
     bias, amplitude, frequency, friction, stairs = 0.4, 0.5, 2.0, 0.7, 20
     turn = 2 * np.pi / frequency
     span = (0.0, stairs * turn)  # it ends within a rest
-    joint = f'frictionloss="{friction}"'
-    system = ("hum", [friction, 1e-4, bias, amplitude])
+    smoothed = 1e-4
+
+    def torques(self, t: Any, q: Any) -> tuple[Any, Any, Any]:
+        growing = self.amplitude * self.frequency * np.cos(self.frequency * t)
+        return self.torque(t), growing, 0.0
 
     def torque(self, t: Any) -> Any:
         return self.bias + self.amplitude * np.sin(self.frequency * t)
@@ -89,9 +112,6 @@ class StickSlip(Scene):
         hum = fx.Sinusoid(amplitude=self.amplitude, angular_frequency=self.frequency)
         motors = [fx.Motor(joint=1, sinusoid=hum), fx.Motor(joint=1, constant=self.bias)]
         return [*motors, fx.DryJointFriction(joint=1, coulomb=self.friction)]
-
-    def rates(self, t: float, y: Array) -> list[float]:
-        return [y[1], self.torque(t) - self.friction * np.tanh(y[1] / 1e-4)]
 
     @cache  # noqa: B019
     def reference(self) -> dict[str, list[float]]:
@@ -163,8 +183,7 @@ class TwoJoints(Scene):
     amplitude, frequency = 10.0, 1.0  # N m, rad/s; the motor in joint 1
     times = np.linspace(0, span[1], 361)[1:]
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=G)
-    joint = 'frictionloss="1"'
-    system = ("loaded", [*friction, 1e-3, amplitude])
+    translated = ("dry_joint_friction",)
     settings = {"scipy": {"dense_output": True}, "odeint": {"times": times}}  # noqa: RUF012
 
     def motor(self, t: float) -> Array:
@@ -178,10 +197,15 @@ class TwoJoints(Scene):
         rubs = [fx.DryJointFriction(joint=j, coulomb=self.friction[j - 1]) for j in (1, 2)]
         return [fx.Motor(joint=1, sinusoid=hum), *rubs]
 
-    def rates(self, t: float, y: Array) -> Array:
-        slide = np.tanh(joints(2) @ y[2:] / 1e-3)
-        forces = self.chain.forces(y[:2], y[2:], self.motor(t) - np.array(self.friction) * slide)
-        return np.append(y[2:], np.linalg.solve(self.chain.mass_matrix(y[:2]), forces))
+    def torques(self, t: float, w1: float, w2: float) -> tuple[float, float]:
+        """Return the torques in the joints; the sign of friction is smoothed over 1e-3 rad/s."""
+        first, second = self.friction
+        driven = self.amplitude * math.sin(self.frequency * t)
+        return driven - first * math.tanh(w1 / 1e-3), -second * math.tanh((w2 - w1) / 1e-3)
+
+    @cached_property
+    def rates(self) -> Any:  # type: ignore[override]
+        return two_rods(torques=self.torques)
 
     @cache  # noqa: B019
     def solved(self) -> tuple[Array, list[float], list[tuple[int, ...]]]:
@@ -209,8 +233,3 @@ class TwoJoints(Scene):
         said = f"creeps at {creep:.0e} rad/s where both joints rest" if creep else "rests exactly"
         trace = {"phi_1": phi[:, 0].tolist(), "phi_2": phi[:, 1].tolist(), "error": off.tolist()}
         return Outcome(error=float(off.max()), said=said, trace=trace)
-
-    def model(self, dt: float, integrator: str, **joint: Any) -> Any:
-        model = super().model(dt, integrator, **joint)
-        model.dof_frictionloss[:] = self.friction
-        return model

@@ -35,18 +35,12 @@ class Absent(Exception):
     """A program that the contender needs is not installed, not built, or not there yet."""
 
 
-class NoReturn(Exception):
-    """A contender did not return within the time limit."""
-
-
 def _report(run: Callable[[], Outcome], pipe: Connection, seconds: int) -> None:
     os.setsid()  # processes that it starts end with it and have the same limit
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     os.chdir(tempfile.gettempdir())  # MuJoCo writes its warnings into a file in the current folder
     try:
         pipe.send(run())
-    except NoReturn:
-        os.kill(os.getpid(), signal.SIGXCPU)
     except (ImportError, Absent) as absence:
         pipe.send(Absent(str(absence)))
     except Exception as failure:  # an exception of the program is its outcome

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import signal
-import subprocess
+import importlib.util
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
-from contenders.conversation import find_executable, words
+from cases import Array
+from contenders.programs import find_executable
 
-from hard_cases.outcome import NoReturn, Outcome
-from hard_cases.rods import Array, mujoco_rods
+from hard_cases.outcome import Outcome
 
 UPRIGHT, HANGING = -np.pi / 2, np.pi / 2
 
@@ -52,9 +51,8 @@ class Scene:
     start: tuple[float, ...] = (0.0,)
     speeds: tuple[float, ...] = (0.0,)
     span: tuple[float, float] = (0.0, 1.0)
-    joint = ""  # attributes of MuJoCo's joints
     hanging = True  # whether MuJoCo's angles are 0 where all rods hang, or where they stand
-    system: tuple[str, Sequence[float]] = ("", ())  # Boost.odeint's name of it, and parameters
+    translated: tuple[str, ...] = ()  # kinds of effects that MuJoCo takes as pendcore does
     settings: dict[str, dict[str, Any]] = {}  # noqa: RUF012  further ones of each program's runner
 
     # What acts, for each program.
@@ -64,6 +62,17 @@ class Scene:
 
     def rates(self, t: float, y: Array) -> Any:
         raise NotImplementedError
+
+    def derivatives(self, t: float, y: Array) -> tuple[Any, Any]:
+        """Return the rates' Jacobian, and their derivative by t, by differences."""
+
+        def slope(move: Array, late: float, step: float) -> Array:
+            ahead, behind = (self.rates(t + s * late, y + s * move) for s in (1, -1))
+            return (np.array(ahead) - behind) / (2 * step)
+
+        steps = 1e-6 * np.maximum(1e-3, np.abs(y))
+        by_state = [slope(move, 0.0, move.sum()) for move in np.diag(steps)]
+        return np.transpose(by_state), slope(0.0 * y, 1e-6, 1e-6)
 
     def torque(self, t: float) -> float:
         """Return MuJoCo's torque in the first joint."""
@@ -139,7 +148,7 @@ class Scene:
     def by_mujoco(
         self, dt: float, integrator: str = "implicitfast", *, watched: bool = False,
         every: float = 0.0, fitted: bool = False, seconds: float | None = None,
-        constant: float | None = None, **joint: Any,
+        constant: float | None = None,
     ) -> Motion:  # fmt: skip
         """Step through the span, or some seconds of it; keep all states, or one `every` so often.
 
@@ -152,9 +161,13 @@ class Scene:
         seconds = seconds or self.span[1] - self.span[0]
         steps = round(seconds / dt)
         each = steps if fitted else max(1, round(every / dt))
-        if constant is not None:
-            joint |= {"solimpfriction": "0.9999 0.9999 0.001", "solreffriction": f"{constant} 1"}
-        model = self.model(seconds / steps if fitted else dt, integrator, **joint)
+        spec = self.model()
+        spec.option.timestep = seconds / steps if fitted else dt
+        spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
+        for joint in spec.joints if constant is not None else ():
+            joint.solimp_friction[:3] = [0.9999, 0.9999, 0.001]
+            joint.solref_friction = [constant, 1]
+        model = spec.compile()
         data = mujoco.MjData(model)
         data.time = self.span[0]
         zero, turn = self.mujocos_zero
@@ -189,12 +202,20 @@ class Scene:
             words=warned or f"{steps} steps", success=not warned,
         )  # fmt: skip
 
-    def model(self, dt: float, integrator: str, **joint: Any) -> Any:
-        attributes = " ".join([self.joint, *(f'{key}="{value}"' for key, value in joint.items())])
-        return mujoco_rods(
-            dt=dt, links=self.links, mass=self.mass, gravity=self.gravity, joint=attributes,
-            integrator=integrator, hanging=self.hanging,
-        )  # fmt: skip
+    def model(self) -> Any:
+        """Make MuJoCo's model, with a motor in the first joint."""
+        import mujoco_models
+        import pendcore as pc
+
+        down = np.array([0.0, 0.0, -1.0 if self.hanging else 1.0])
+        rods = [self.mass] * self.links, [self.length] * self.links
+        spec = mujoco_models.chain(*rods, self.gravity, down)
+        spec.option.iterations, spec.option.tolerance = 200, 0
+        mujoco_models.add_motor(spec, 1)
+        for effect in self.effects(pc.effects):
+            if effect.kind in self.translated:
+                mujoco_models.add_effect(spec, effect, self.length * down)
+        return spec
 
     @property
     def mujocos_zero(self) -> tuple[float, float]:
@@ -208,56 +229,54 @@ class Scene:
             (HANGING - self.zero, -self.sign) if self.hanging else (self.zero - UPRIGHT, self.sign)
         )
 
-    def task(self, method: str, atol: float, rtol: float, first_step: float) -> Odeint:
-        start = (*self.start, *self.speeds)
-        return Odeint(*self.system, method, atol, rtol, first_step, start)
+    def odeint_of(self, atol: float, rtol: float, first_step: float) -> tuple[Any, Any]:
+        boost = odeint()
+        return boost.System(self.rates, self.derivatives), boost.Settings(atol, rtol, first_step)
 
-    def by_odeint(self, times: Any = None, **how: Any) -> Motion:
+    def by_odeint(self, method: str, times: Any = None, **how: Any) -> Motion:
         """Integrate through the span, or ask for states at times."""
-        task = self.task(**how)
-        if times is None:
-            told = task.ask("integrate", *self.span)
-            t, y, steps = np.array(told["t"]), np.array([told["y"]]), told["steps"][0]
-            return Motion(t=t, y=y, at=lambda _: y, words=f"{steps:.0f} steps")
-        y = np.reshape(task.ask("states", len(times), *times)["states"], (len(times), -1))
+        (system, settings), start = self.odeint_of(**how), [*self.start, *self.speeds]
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if times is None:
+                t, y, steps = odeint().integrate(method, system, start, *self.span, settings)
+                y = np.array([y])
+                return Motion(t=np.array([t]), y=y, at=lambda _: y, words=f"{steps} steps")
+            y = np.array(odeint().at_times(method, system, start, times, settings))
 
         def at(t: Any) -> Array:
             return np.array([np.interp(t, times, column) for column in y.T]).T
 
         return Motion(t=np.asarray(times), y=y, at=at, words="")
 
-
-@dataclass(frozen=True, slots=True)
-class Odeint:
-    """A task of Boost.odeint's program: equations by name, parameters, method, start (q, qd)."""
-
-    system: str
-    parameters: Sequence[float]
-    method: str
-    atol: float
-    rtol: float
-    first_step: float
-    start: Sequence[float]
-
-    def ask(self, word: str, *numbers: float) -> dict[str, list[float]]:
-        """Return the numbers of the answer by name."""
-        task = f"{self.system} {listed(self.parameters)} {self.method}"
-        settings = words([self.atol, self.rtol, self.first_step])
-        return ask(f"{word} {task} {settings} {listed(self.start)} {words(numbers)}")
+    def steps_of_odeint(
+        self, longest: float = 0.0, y: Any = None, t: float = 0.0, method: str = "", **how: Any
+    ) -> Any:
+        """Begin dopri5 with dense output; no step is longer than the longest, unless that is 0."""
+        system, settings = self.odeint_of(**how)
+        start = [*self.start, *self.speeds] if y is None else y
+        return odeint().Dense(system, start, t, settings, longest)
 
 
-def listed(numbers: Sequence[float]) -> str:
-    return f"{len(numbers)} {words(numbers)}"
+@cache
+def odeint() -> Any:
+    """Load the module of Boost.odeint."""
+    name = "hard_cases_odeint"
+    found = importlib.util.spec_from_file_location(name, find_executable(f"{name}.so"))
+    assert found
+    assert found.loader
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    return module
 
 
-def ask(request: str) -> dict[str, list[float]]:
-    """Ask Boost.odeint's program, and return the numbers of its answer by name."""
-    path = find_executable("hard_cases_odeint", "HARD_CASES_ODEINT")
-    done = subprocess.run([path], input=f"{request}\n", capture_output=True, text=True, check=False)
-    if done.returncode in {-signal.SIGXCPU, -signal.SIGKILL}:
-        raise NoReturn
-    verdict, _, answer = done.stdout.strip().partition(" ")
-    if verdict != "ok":
-        raise RuntimeError(answer or f"ended with {done.returncode}")
-    found = (one.split() for one in answer.split(";"))
-    return {name: [float(number) for number in numbers] for name, *numbers in found}
+def crossing(steps: Any, low: float, high: float, value: Callable[[Any], float]) -> float:
+    """Bisect for the time in the last step at which the sign of `value` of the state changes."""
+    first = value(steps.at(low)) > 0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        if (value(steps.at(middle)) > 0) == first:
+            low = middle
+        else:
+            high = middle
+    return high

@@ -1,4 +1,4 @@
-"""The rods of the hard cases as the peers take them: rates for SciPy, models for MuJoCo."""
+"""Rates of two rods of 1 kg and 1 m with a mass at the tip, for programs without mechanics."""
 
 from __future__ import annotations
 
@@ -6,70 +6,40 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
+from cases import Array
 
-Array = npt.NDArray[np.float64]
 G = 9.807
 
 
 def two_rods(
-    payload: float = 0.0, *, from_hanging: bool = False, of: Any = math
+    payload: float = 0.0,
+    *,
+    from_hanging: bool = False,
+    of: Any = math,
+    one: Any = 1,
+    torques: Callable[[float, float, float], tuple[float, float]] | None = None,
 ) -> Callable[[float, Array], list[float]]:
-    """Rates of two rods of 1 kg and 1 m with a mass at the tip.
+    """Make the rates; `torques` gives those in both joints, N m, at t, qd_1 and qd_2.
 
-    The determinant is free of terms that cancel. Python's floats are quicker than NumPy's, which
-    know infinities.
+    `of` has the functions of an arithmetic, and `one` is its number 1. The determinant is free of
+    terms that cancel. Python's floats are quicker than NumPy's, which know infinities.
     """
-    cos, sin, p, a = of.cos, of.sin, payload, 0.5 + payload
+    cos, sin, a = of.cos, of.sin, 0.5 + payload
+    weight1, weight2 = (1.5 + payload) * (one * G), a * (one * G)
+    near, far = 4 * one / 3 + payload, one / 3 + payload
+    least = 7 * one / 36 + 2 * payload / 3
 
-    def rates(_: float, y: Any) -> list[float]:
+    def rates(t: float, y: Any) -> list[float]:
         q1, q2, w1, w2 = y.tolist() if of is math else y
         c, s = cos(q1 - q2), sin(q1 - q2)
         g1, g2 = (-sin(q1), -sin(q2)) if from_hanging else (cos(q1), cos(q2))
-        r1 = (1.5 + p) * G * g1 - a * s * (w2 * w2)
-        r2 = a * G * g2 + a * s * (w1 * w1)
-        determinant = 7 / 36 + 2 * p / 3 + (a * s) * (a * s)
-        a1 = ((1 / 3 + p) * r1 - a * c * r2) / determinant
-        return [w1, w2, a1, ((4 / 3 + p) * r2 - a * c * r1) / determinant]
+        r1 = weight1 * g1 - a * s * (w2 * w2)
+        r2 = weight2 * g2 + a * s * (w1 * w1)
+        if torques:
+            first, second = torques(t, w1, w2)
+            r1, r2 = r1 + first - second, r2 + second
+        determinant = least + (a * s) * (a * s)
+        a1 = (far * r1 - a * c * r2) / determinant
+        return [w1, w2, a1, (near * r2 - a * c * r1) / determinant]
 
     return rates
-
-
-ROD = """<mujoco>
- <option timestep="{dt}" gravity="0 0 {down}" integrator="{integrator}" iterations="200"
-         tolerance="0"/>
- <worldbody>
-  <body>
-   <joint name="joint" type="hinge" axis="0 1 0" {joint}/>
-   <inertial pos="0 0 {side}0.5" mass="{mass}" diaginertia="{inertia} {inertia} {thin}"/>
-   {tip}
-  </body>
- </worldbody>
- <actuator><motor joint="joint"/></actuator>
-</mujoco>"""
-
-SECOND = """<body pos="0 0 {side}1">
-    <joint name="second" type="hinge" axis="0 1 0" {joint}/>
-    <inertial pos="0 0 {side}0.5" mass="{mass}" diaginertia="{inertia} {inertia} {thin}"/>
-    {load}
-   </body>"""
-
-LOAD = """<body pos="0 0 {side}1"><inertial pos="0 0 0" mass="{payload}"
-     diaginertia="1e-9 1e-9 1e-9"/></body>"""
-
-
-def mujoco_rods(
-    *, dt: float, links: int, mass: float, gravity: float, joint: str, integrator: str,
-    hanging: bool = True, payload: float = 0.0,
-) -> Any:  # fmt: skip
-    """Compile one or two uniform rods of 1 m, with a point mass at the tip of the second."""
-    import mujoco
-
-    known = {
-        "dt": repr(dt), "down": -gravity, "integrator": integrator, "joint": joint, "mass": mass,
-        "inertia": mass / 12, "thin": 1e-4, "side": "-" if hanging else "", "payload": payload,
-    }  # fmt: skip
-    known["load"] = LOAD.format(**known) if payload else ""
-    tip = SECOND.format(**known) if links == 2 else ""
-    return mujoco.MjModel.from_xml_string(ROD.format(tip=tip, **known))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 from math import cos, sin
 from typing import Any
 
 import numpy as np
+from cases import Array
 from hybrid_chain import extrapolated_step
 from mpmath import mp, mpf, sqrt
+from trajectory_error import coupling
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene
-from hard_cases.rods import Array, G, mujoco_rods, two_rods
+from hard_cases.rods import G, two_rods
 
 
 class KnownEnd(Scene):
@@ -42,18 +44,15 @@ class StiffDamper(KnownEnd):
 
     links, mass, gravity = 2, 1.0, G
     start, speeds, span = (np.pi / 4, np.pi / 3), (0.0, 0.0), (0.0, 5.0)
+    translated = ("viscous_joint",)
     damping = 1e5  # N m s at joint 2; over its moment of inertia, about 0.08, it is 1e6 a second
-    system = ("loaded", [damping])
 
     def effects(self, fx: Any) -> list[Any]:
         return [fx.ViscousJoint(joint=2, damping=self.damping)]
 
-    def rates(self, t: float, y: Array) -> Array:
-        """The textbook's rates, with -b (qd_2 - qd_1) on link 2 and its opposite on link 1."""
-        f = np.array(two_rods(of=np)(t, y))
-        a12, couple = 0.5 * np.cos(y[0] - y[1]), -self.damping * (y[3] - y[2])
-        f[2:] += np.linalg.solve([[4 / 3, a12], [a12, 1 / 3]], [-couple, couple])
-        return f
+    @cached_property
+    def rates(self) -> Any:  # type: ignore[override]
+        return two_rods(of=np, torques=lambda t, w1, w2: (0.0, -self.damping * (w2 - w1)))
 
     @cache  # noqa: B019
     def end(self) -> list[float]:
@@ -75,11 +74,6 @@ class StiffDamper(KnownEnd):
         more = "" if motion.success else f', "{motion.raw.message}"'
         return self.judge(motion.y[-1, :2], motion.words + more)
 
-    def model(self, dt: float, integrator: str, **joint: Any) -> Any:
-        model = super().model(dt, integrator, **joint)
-        model.dof_damping[1] = self.damping
-        return model
-
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         steps = round(self.span[1] / dt)
         found = self.by_mujoco(dt, integrator, every=self.span[1])
@@ -95,9 +89,8 @@ class Payload(KnownEnd):
     """
 
     links, mass, gravity, speeds = 2, 1.0, G, (0.0, 0.0)
-    zero = HANGING
+    zero, translated = HANGING, ("payload",)
     ratio, amplitude = 1e6, 1e-4
-    system = ("payload", [ratio])
     steps = 40_000  # of the reference; half as many move the end by 3e-10 rad
     rates = staticmethod(two_rods(ratio, from_hanging=True))  # type: ignore[assignment]
 
@@ -151,12 +144,6 @@ class Payload(KnownEnd):
             return Outcome(said=motion.words, right=False)
         return self.judged(motion)
 
-    def model(self, dt: float, integrator: str, **_: Any) -> Any:
-        return mujoco_rods(
-            dt=dt, links=2, mass=self.mass, gravity=G, joint="", integrator=integrator,
-            payload=self.ratio,
-        )  # fmt: skip
-
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         motion = self.by_mujoco(dt, integrator, fitted=True)
         if not motion.success:
@@ -176,15 +163,12 @@ class LetGo(KnownEnd):
     links, gravity = 100, 9.81
     mass = length = 1 / links
     start = speeds = (0.0,) * links
-    system = ("chain", [links])
     settings = {"pendcore": {"store": "end"}}  # noqa: RUF012
     steps = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order makes it 1e-10 m
 
     def __init__(self) -> None:
-        n, each = self.links, self.mass * self.length
-        self.moments = each * (n - 0.5 - np.arange(n))
-        self.coupled = self.length * np.minimum.outer(self.moments, self.moments)
-        np.fill_diagonal(self.coupled, self.length * (self.moments - each / 6))
+        one = np.ones(self.links)
+        self.coupled, self.moments = coupling(self.mass * one, self.length * one)
 
     def positions(self, q: Array) -> Array:
         """Return the position of the tip."""
@@ -243,21 +227,11 @@ class LetGo(KnownEnd):
         factor = cho_factor(matrix, overwrite_a=True, check_finite=False)
         return np.append(y[n:], cho_solve(factor, forces, check_finite=False))
 
-    def model(self, dt: float, integrator: str, **_: Any) -> Any:
-        import mujoco
+    def model(self) -> Any:
+        import mujoco_models
 
-        inertia = self.mass * self.length**2 / 12
-        link = (
-            '<body pos="{} 0 0"><joint type="hinge" axis="0 1 0"/><inertial '
-            f'pos="{self.length / 2} 0 0" mass="{self.mass}" '
-            f'diaginertia="1e-9 {inertia} {inertia}"/>'
-        )
-        others = link.format(self.length) * (self.links - 1)
-        return mujoco.MjModel.from_xml_string(
-            f'<mujoco><option timestep="{dt}" gravity="0 0 {-self.gravity}" '
-            f'integrator="{integrator}"/><worldbody>{link.format(0)}{others}'
-            f"{'</body>' * self.links}</worldbody></mujoco>"
-        )
+        rods = [self.mass] * self.links, [self.length] * self.links
+        return mujoco_models.chain(*rods, self.gravity)
 
     mujocos_zero = (0.0, 1.0)  # type: ignore[assignment]
 

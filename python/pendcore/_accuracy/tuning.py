@@ -5,7 +5,7 @@ They stand between price and promise. Both are measured on random regular scenes
 judge them. `docs/generators/tuning.py` halves and doubles each number and tells what becomes of
 both, for all strategies and for second runs alone; docs/background/accuracy_cost.md has its tables.
 Those that change nothing there serve scenes that are stiff, chaotic or at the limit of doubles, and
-ends that are met early; `make test-error` draws such scenes, and judges the promise.
+ends that are met early; `make campaign OF=errors` draws such scenes, and judges the promise.
 """
 
 from __future__ import annotations
