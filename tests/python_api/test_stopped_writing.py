@@ -88,7 +88,7 @@ def test_a_report_is_written_without_the_figures_that_cannot_be_drawn(monkeypatc
     status, _, err = pendcore("derive --to report -o o")
     assert (status, listed("o")) == (1, ["report.md"])
     assert "mechanism.png is not written: latex could not be found" in err
-    monkeypatch.setattr("pendcore.derive.report.conversion.has_pandoc", lambda: False)
+    monkeypatch.setattr("shutil.which", lambda command: None)
     assert "these need pandoc" in pendcore("derive --to report -o o").err
 
 
