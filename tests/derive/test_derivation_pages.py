@@ -10,6 +10,7 @@ import matplotlib.image
 import numpy as np
 import pendcore as pc
 import pytest
+from symbolic_scenes import derivation
 
 pytestmark = pytest.mark.unsanitized
 
@@ -56,7 +57,7 @@ def test_the_teachers_lines_run(capsys, tmp_path, monkeypatch):
 def test_the_figures_of_the_pages_are_those_of_the_report(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", "")
     case = pc.Case.textbook()
-    pc.derive.Derivation(case.scene).report(case, tmp_path)
+    derivation(case.scene).report(case, tmp_path)
     for name in DRAWN:
         drawn, kept = (
             matplotlib.image.imread(path)

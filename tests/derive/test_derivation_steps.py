@@ -15,15 +15,15 @@ import numpy as np
 import pendcore as pc
 import pytest
 import sympy
-from pendcore.derive import Derivation, Equation, Formula, line_breaks, writing
-from symbolic_scenes import SETS, derived, scene, states
+from pendcore.derive import Derivation, Equation, Formula, line_breaks
+from symbolic_scenes import SETS, derivation, derived, scene, states
 
 pytestmark = pytest.mark.unsanitized
 
 every_chain = pytest.mark.parametrize(
     ("name", "n"), [(name, n) for n in (1, 2, 3) for name in SETS]
 )
-TEXTBOOK = Derivation.textbook()
+TEXTBOOK = derivation(pc.Scene.textbook())
 NUMBERS = [f"2.{k}" for k in range(1, 12)]
 ROD = pc.Link(mass=1.0, length=1.0)
 fx = pc.effects
@@ -43,18 +43,16 @@ def motion(name: str, n: int, seed: int) -> tuple[dict[Any, float], pc.Solution]
     drawn = scene(name, n, seed)
     (state,) = states(drawn, seed, count=1)
     now = pc.simulate(drawn, q0=state.q, qd0=state.qd, t_span=(state.t, state.t), store="steps")
-    derivation = derived(name, n)
-    s = derivation.symbols
-    known = dict(Derivation(drawn).values)
+    of = derived(name, n)
+    s = of.symbols
+    known = dict(derivation(drawn).values)
     known |= {s.t: state.t, **dict(zip(s.q, state.q, strict=True))}
     known |= dict(zip(s.qd, state.qd, strict=True))
     known |= dict(zip(s.qdd, now.accelerations()[0], strict=True))
-    for k, (pair, force) in enumerate(
-        zip(derivation.equations.forces, now.reactions()[0], strict=True)
-    ):
+    for k, (pair, force) in enumerate(zip(of.equations.forces, now.reactions()[0], strict=True)):
         known |= dict(zip(pair, force if k == 0 else -force, strict=True))
-    for joint, couple in derivation.holding_couples.items():
-        known[derivation.equations.holding[joint]] = value(couple, known)
+    for joint, couple in of.holding_couples.items():
+        known[of.equations.holding[joint]] = value(couple, known)
     return known, now
 
 
@@ -103,8 +101,7 @@ def check_energy(derivation: Derivation, known: dict[Any, float], now: pc.Soluti
     kinetic, potential = now.energy().kinetic[0], now.energy().potential[0]
     assert named["T"] == pytest.approx(kinetic, rel=1e-13)
     assert named["V"] == pytest.approx(potential, rel=1e-13, abs=1e-13)
-    total = derivation.energy.kinetic + derivation.energy.potential
-    rate = value(derivation.chain.rate(total), known)
+    rate = value(derivation.chain.rate(sum(derivation.energies_by_definitions)), known)
     size = abs(rate) + sum(abs(x) for name, x in named.items() if re.fullmatch(r"P\d", name))
     assert abs(named["d(T + V)/dt"] - rate) <= 1e-11 * (1 + size)
 
@@ -153,7 +150,7 @@ def test_no_reaction_and_every_couple_of_a_lock_is_in_the_equations_of_motion(
 
 def test_two_drags_on_a_rod_are_told_apart() -> None:
     drag = fx.RodDrag(link=2, drag_coefficient=1.0, diameter=0.1)
-    found = equations(Derivation(pc.Scene(links=[ROD] * 2, effects=[drag, drag])))
+    found = equations(derivation(pc.Scene(links=[ROD] * 2, effects=[drag, drag])))
     assert [e.lhs.text for e in found if str(e.lhs).startswith(r"\mathbf{D}")] == ["D2", "D2^(2)"]
     of = {e.number: e.rhs.text for e in found if e.number in ("2.3", "2.4")}
     assert of["2.3"] == "F12 + G2 + D2 + D2^(2)"
@@ -164,7 +161,7 @@ def test_two_drags_on_a_rod_are_told_apart() -> None:
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_a_payload_with_inertia_takes_a_couple_from_the_last_link(n: int) -> None:
     def payload(**own: float) -> tuple[list[str], str]:
-        made = Derivation(pc.Scene(links=[ROD] * n, effects=[fx.Payload(mass=0.5, **own)]))
+        made = derivation(pc.Scene(links=[ROD] * n, effects=[fx.Payload(mass=0.5, **own)]))
         (step,) = (s for s in made.steps if s.title.endswith("of the payload"))
         return list(map(str, step.equations)), made.latex()
 
@@ -210,9 +207,7 @@ def test_text_and_latex_are_read_back(name: str, n: int) -> None:
     for equation in scalars(derivation):
         for side in (equation.lhs, equation.rhs):
             side = sympy.sympify(side)
-            shown = writing.arranged(
-                side, derivation.symbols.rank, has_bars=True
-            )  # as LaTeX has it
+            shown = derivation.symbols.arranged(side, has_bars=True)  # as LaTeX has it
             assert sympy.expand(shown.doit() - side) == 0
             names = {symbol.name: symbol for symbol in side.free_symbols}
             if all(name.isidentifier() for name in names):
@@ -268,17 +263,17 @@ def test_a_bracket_that_is_wider_than_a_line_is_opened() -> None:
 
 def test_four_links_and_more_are_solved_by_elimination_on_less_than_a_page() -> None:
     for n, effects in ((4, []), (5, []), (5, [fx.Lock(joint=2)])):
-        derivation = Derivation(pc.Scene(links=[ROD] * n, effects=effects))
-        (step,) = (s for s in derivation.steps if s.title.startswith("Solution for"))
+        made = derivation(pc.Scene(links=[ROD] * n, effects=effects))
+        (step,) = (s for s in made.steps if s.title.startswith("Solution for"))
         assert "L D L^{T}" in step.text
         known: dict[Any, Any] = {}
         for equation in step.equations[: -len(effects) or None]:
             assert len(equation.rows()) <= 2, equation
             known[equation.lhs] = equation.rhs.xreplace(known)
         numbers = {x: k % 7 + 30.0 * (str(x)[1] == str(x)[-1])
-                   for k, x in enumerate(derivation.named.entries)}  # fmt: skip
+                   for k, x in enumerate(made.named.entries)}  # fmt: skip
         if n == 4:
-            by_cramer = zip(derivation.symbols.qdd, derivation.by_entries, strict=True)
+            by_cramer = zip(made.symbols.qdd, made.by_entries, strict=True)
             for a, expression in by_cramer:
                 found = float(known[a].xreplace(numbers))
                 assert found == pytest.approx(float(expression.xreplace(numbers)), rel=1e-12)

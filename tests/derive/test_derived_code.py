@@ -18,9 +18,9 @@ import sympy
 from derived_scenes import SCENES, STATES, Floats, Known, known
 from pendcore.cli import main
 from pendcore.derive import Derivation
-from pendcore.derive.code.computation import share
-from pendcore.derive.code.cpp import header
-from pendcore.derive.code.octave import _exact, inline_function, written_out
+from pendcore.derive.code.octave import _exact, written_out
+from pendcore.derive.code.statements import share
+from symbolic_scenes import derivation
 
 pytestmark = pytest.mark.unsanitized
 
@@ -35,9 +35,8 @@ compiler = pytest.mark.skipif(not shutil.which("g++"), reason="there is no g++")
 scenes = pytest.mark.parametrize("name", SCENES)
 
 
-@cache
 def derived(name: str) -> Derivation:
-    return Derivation(SCENES[name])
+    return derivation(SCENES[name])
 
 
 @cache
@@ -154,7 +153,7 @@ def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
     """Return dy/dt, forces and energies: all headers in one program, no warning allowed."""
     folder = tmp_path_factory.mktemp("headers")
     for name in SCENES:
-        (folder / f"{name}.hpp").write_text(header(derived(name), "Chain", name))
+        (folder / f"{name}.hpp").write_text(derived(name).to_cpp("Chain", name))
     (folder / "main.cpp").write_text(
         MAIN.format(
             includes="\n".join(f'#include "{name}.hpp"' for name in SCENES),
@@ -211,13 +210,13 @@ def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats
     folder = tmp_path_factory.mktemp("octave")
     script = ["1;"]
     for name in SCENES:
-        core, derivation = asked(name), derived(name)
-        (folder / f"{name}.m").write_text(derivation.to_octave(name))
-        (folder / f"{name}_long.m").write_text(written_out(derivation, f"{name}_long"))
+        core, made = asked(name), derived(name)
+        (folder / f"{name}.m").write_text(made.to_octave(name))
+        (folder / f"{name}_long.m").write_text(written_out(made, f"{name}_long"))
         states = np.column_stack([core.t, woven(core.q, core.qd)]).tolist()
         rows = "\n".join(" ".join(map(repr, row)) for row in states)
         script += [
-            inline_function(derivation, "f"),
+            made.to_octave_inline("f"),
             f"for state = [{rows}]'",
             "  t = state(1); x = state(2:end);",
             f"  printf('%.17g ', {name}(t,x), {name}_long(t,x), f(t,x)); printf('\\n');",
@@ -241,8 +240,8 @@ def test_octave_says_what_the_core_does(name: str, told_by_octave: dict[str, Flo
 @pytest.mark.outside_build
 def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
     """RR.m runs with ode45 as printed there, then at tolerances that let digits be compared."""
-    (tmp_path / "RR.m").write_text(Derivation.textbook().to_octave())
-    (tmp_path / "g.m").write_text(Derivation.textbook().to_octave_inline())
+    (tmp_path / "RR.m").write_text(derived("textbook").to_octave())
+    (tmp_path / "g.m").write_text(derived("textbook").to_octave_inline())
     said = in_octave(
         """
         t0 = 0; tf = 5; time = [0 tf];
@@ -287,7 +286,7 @@ def test_names_that_a_language_refuses_are_refused(name: str) -> None:
     if name not in ("_R", "end", "dx"):
         for given in ({"name": name}, {"namespace": name}):
             with pytest.raises(ValueError, match=r"must be a name that C\+\+ allows"):
-                header(derived("textbook"), **given)
+                derived("textbook").to_cpp(**given)
 
 
 @pytest.mark.parametrize(
@@ -295,7 +294,7 @@ def test_names_that_a_language_refuses_are_refused(name: str) -> None:
 )
 def test_a_header_is_not_called_as_what_is_in_it(given: dict[str, str]) -> None:
     with pytest.raises(ValueError, match="is taken"):
-        header(derived("textbook"), **given)
+        derived("textbook").to_cpp(**given)
 
 
 def test_what_is_shared_is_computed_once_before_it_is_needed() -> None:
@@ -319,7 +318,7 @@ def test_the_example_s_header_is_what_is_written_now() -> None:
     """Only the versions that wrote it are compared; others may share other subexpressions."""
     kept = (EXAMPLES / "10_generated_header.hpp").read_text()
     case = pc.read_case(EXAMPLES / "10_generated_header.toml")
-    written = Derivation(case.scene).to_cpp()
+    written = derivation(case.scene).to_cpp()
     (line,) = (line for line in written.splitlines() if "Written by" in line)
     if line not in kept:
         pytest.skip(f"another version than this wrote it: {line}")

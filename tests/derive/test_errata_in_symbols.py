@@ -11,15 +11,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import pendcore as pc
 import pytest
 import sympy
-from pendcore.derive import Derivation
 from pendcore.derive.newton_euler import Balance
 from reference import printed_equations as printed
 from reference.printed_equations import ALL_REPAIRS, AS_PRINTED, Instant, Pendulum, Repairs
+from symbolic_scenes import derivation
 
 PAGE = Path(__file__).parents[2] / "docs/reference/errata.md"
-BOOK = Derivation.textbook()
+BOOK = derivation(pc.Scene.textbook())
 S = BOOK.symbols
 (m1, m2), (L1, L2), g = S.masses, S.lengths, S.gravity
 (q1, q2), (w1, w2), (a1, a2) = S.q, S.qd, S.qdd

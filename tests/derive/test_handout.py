@@ -9,13 +9,13 @@ from typing import Any
 
 import pendcore as pc
 import pytest
-from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
+from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN, asked, drawn, reported, solved
 from pendcore.derive import Derivation, line_breaks
 from pendcore.derive.document import Blank, Displayed, Document, Reader, Table
-from pendcore.derive.report import conversion, motion, report, worksheet
-from pendcore.derive.report.figures import Figures
+from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.numbers import Start
 from pendcore.derive.report.quantities import number
+from symbolic_scenes import derivation
 
 pytestmark = pytest.mark.unsanitized
 needs_pandoc = pytest.mark.skipif(shutil.which("pandoc") is None, reason="pandoc is not installed")
@@ -29,9 +29,7 @@ fx = pc.effects
 @pytest.fixture(scope="module", params=CASES)
 def handed_out(request: pytest.FixtureRequest) -> tuple[pc.Case, Derivation, Document, Document]:
     case = CASES[request.param]
-    derivation, solution = Derivation(case.scene), motion.solved(case)
-    whole, blank = (write(derivation, case, solution) for write in (report, worksheet))
-    return case, derivation, whole, blank
+    return case, derivation(case.scene), reported(case), asked(case)
 
 
 def displayed(document: Document) -> list[Displayed]:
@@ -39,12 +37,12 @@ def displayed(document: Document) -> list[Displayed]:
 
 
 def test_every_step_of_the_derivation_is_in_it_and_fits_its_lines(handed_out: Any) -> None:
-    _, derivation, whole, blank = handed_out
+    _, derived, whole, blank = handed_out
     for document in (whole, blank):
         text = document.markdown()
-        for step in derivation.steps:
+        for step in derived.steps:
             assert f"### {step.number}. {step.title}\n" in text
-    numbers = (e.number for s in derivation.steps for e in s.equations if e.number)
+    numbers = (e.number for s in derived.steps for e in s.equations if e.number)
     shown = displayed(whole)
     assert [block.number for block in shown if block.number] == list(dict.fromkeys(numbers))
     for block in shown:
@@ -58,8 +56,7 @@ def test_every_step_of_the_derivation_is_in_it_and_fits_its_lines(handed_out: An
 
 
 def test_the_textbooks_report_has_its_numbers_and_units() -> None:
-    case = CASES["textbook"]
-    text = report(Derivation(case.scene), case, motion.solved(case)).markdown()
+    text = reported(CASES["textbook"]).markdown()
     assert re.findall(r"\\tag{(.*?)}", text) == [f"2.{k}" for k in range(1, 12)]
     for told in (
         r"q_{1}(0) &= 0.785398\;\text{rad} = 45^\circ",
@@ -72,43 +69,41 @@ def test_the_textbooks_report_has_its_numbers_and_units() -> None:
         assert told in text, told
 
 
+ACCELERATION = r"\ddot{x}_{A} = -0.9 \sin {3 t}\;\text{m}/\text{s}^{2}"
+LOCKED = [
+    *(r"\mathbf{f} + \boldsymbol{\lambda}", r"$\lambda_{1} = -\Lambda_{2}$"),
+    "the condition that a locked joint does not turn",
+]
+
+
 @pytest.mark.parametrize(
-    ("effects", "told"),
+    ("effect", "told"),
     [
-        (
-            [fx.DrivenPivot(x=fx.Sinusoid(0.1, 3.0))],
-            [r"\ddot{x}_{A} = -0.9 \sin {3 t}\;\text{m}/\text{s}^{2}"],
-        ),
-        ([fx.RodDrag(link=2, drag_coefficient=1.2, diameter=0.1)], [r"F_{d,2} &= -\frac{0.0245"]),
-        ([fx.Motor(joint=1, constant=2.0)], [r"\tau_{1} = 2\;\text{N}\,\text{m}"]),
-        (
-            [fx.Lock(joint=2), fx.Payload(mass=0.5, inertia=0.01)],
-            [r"\mathbf{f} + \boldsymbol{\lambda}", r"$\lambda_{1} = -\Lambda_{2}$",
-             "the condition that a locked joint does not turn"],
-        ),
+        (fx.DrivenPivot(x=fx.Sinusoid(0.1, 3.0)), [ACCELERATION]),
+        (fx.RodDrag(link=2, drag_coefficient=1.2, diameter=0.1), [r"F_{d,2} &= -\frac{0.0245"]),
+        (fx.Motor(joint=1, constant=2.0), [r"\tau_{1} = 2\;\text{N}\,\text{m}"]),
+        (fx.Lock(joint=2), LOCKED),
     ],
     ids=["pivot", "drag", "motor", "lock"],
-)  # fmt: skip
-def test_every_symbol_of_f_has_its_numbers_where_f_has_them(
-    effects: list[Any], told: list[str]
-) -> None:
+)
+def test_every_symbol_of_f_has_its_numbers_where_f_has_them(effect: Any, told: list[str]) -> None:
+    effects = [effect, fx.Payload(mass=0.5, inertia=0.01)]
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * 2, effects=effects)
-    case = pc.Case(scene=scene, q0=(0.3, 0.4), t_span=(0, 2))
-    derivation = Derivation(scene)
-    text = report(derivation, case, motion.solved(case)).markdown()
+    case, derived = pc.Case(scene=scene, q0=(0.3, 0.4), t_span=(0, 2)), derivation(scene)
+    text = reported(case).markdown()
     text = text.split("### The equations of motion with numbers\n")[1].split("\n##")[0]
     for words in told:
         assert words in text, text
-    s, write = derivation.symbols, derivation.symbols.latex
-    free = set().union(*(x.free_symbols for x in derivation.named.entries.values()))
-    left = free - {s.t, *s.q, *s.qd, *derivation.values}
+    s, write = derived.symbols, derived.symbols.latex
+    free = set().union(*(x.free_symbols for x in derived.named.entries.values()))
+    left = free - {s.t, *s.q, *s.qd, *derived.values}
     assert all(re.search(re.escape(write(x)) + " &?= ", text) for x in left)
 
 
 def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out: Any) -> None:
-    case, derivation, *_ = handed_out
-    rows = Start(derivation, case).rows()
-    assert len(rows) == 3 * derivation.n + len(derivation.equations.locked) + 2
+    case, derived, *_ = handed_out
+    rows = Start(derived, case).rows()
+    assert len(rows) == 3 * derived.n + len(derived.equations.locked) + 2
     scale = max(abs(core) for *_, core in rows)
     for name, _, own, core in rows:
         assert abs(own - core) <= 1e-13 * scale, name
@@ -116,37 +111,34 @@ def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out:
 
 def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
     """A joint's couple acts on the link that begins there, and reversed on the link before."""
-    case, derivation, *_ = handed_out
-    shown = [
-        text.get_text()
-        for axes in Figures(derivation, case.q0).free_bodies().figure.axes
-        for text in axes.texts
-    ]
-    for joint in range(1, derivation.n + 1):
-        couple = derivation.equations.joint_couple(joint)
+    case, derived, *_ = handed_out
+    sheets = drawn("free_bodies", case.scene, case.q0).axes
+    shown = [text.get_text() for axes in sheets for text in axes.texts]
+    for joint in range(1, derived.n + 1):
+        couple = derived.equations.joint_couple(joint)
         if couple != 0:
-            drawn = shown.count(f"${derivation.symbols.latex(couple)}$")
-            assert drawn == (1 if joint == 1 else 2), couple
+            times = shown.count(f"${derived.symbols.latex(couple)}$")
+            assert times == (1 if joint == 1 else 2), couple
 
 
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:
-    case, derivation, *_ = handed_out
-    drawn = Figures(derivation, case.q0).reactions(motion.solved(case)).figure
-    rows = {name: own for name, _, own, _ in Start(derivation, case).rows()}
-    for axis, names in zip(drawn.axes, derivation.equations.forces, strict=True):
+    case, derived, *_ = handed_out
+    curves = motion.reactions(derived, solved(case)).figure.axes
+    rows = {name: own for name, _, own, _ in Start(derived, case).rows()}
+    for axis, names in zip(curves, derived.equations.forces, strict=True):
         assert axis.get_ylabel().endswith("(N)")
         for line, name in zip(axis.lines, names, strict=False):
-            at_start = rows[derivation.symbols.latex(name)]
+            at_start = rows[derived.symbols.latex(name)]
             assert line.get_ydata()[0] == pytest.approx(at_start, rel=1e-12, abs=1e-12)
-    assert drawn.axes[-1].get_xlabel() == "t (s)"
+    assert curves[-1].get_xlabel() == "t (s)"
 
 
 def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
-    case, derivation, whole, blank = handed_out
+    case, derived, whole, blank = handed_out
     text = blank.markdown()
     works = any(effect.description.account != "none" for effect in case.scene.effects)
     assert ("keep the balance" in text) is works
-    for name, _, own, _ in Start(derivation, case).rows():
+    for name, _, own, _ in Start(derived, case).rows():
         if own and name not in ("T", "V"):
             assert f"${number(own)}$" in whole.markdown()
             assert f"${number(own)}$" not in text
@@ -156,60 +148,47 @@ def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
 
 
 def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -> None:
-    _, derivation, _, blank = handed_out
-    asked = [block.latex for block in blank.blocks if isinstance(block, Blank)]
+    _, derived, _, blank = handed_out
+    blanks = [one.latex for one in blank.blocks if isinstance(one, Blank) and one.latex]
     named_again = [
         equation
-        for step in derivation.steps
+        for step in derived.steps
         for k, equation in enumerate(step.equations)
         if not equation.number and equation.lhs in [one.lhs for one in step.equations[:k]]
     ]
     assert "M" in [str(one.lhs) for one in named_again]  # with its value: it has a blank already
-    assert len(asked) == sum(len(step.equations) for step in derivation.steps) - len(named_again)
-    for left in asked:
+    assert len(blanks) == sum(len(step.equations) for step in derived.steps) - len(named_again)
+    for left in blanks:
         assert not re.search(r"\\(sin|cos)\b|\\frac{[^\\]", left), left
 
 
-def test_a_worksheet_states_what_acts_and_what_its_symbols_are() -> None:
-    def stated(case: pc.Case) -> str:
-        derivation = Derivation(case.scene)
-        text = worksheet(derivation, case, motion.solved(case)).markdown()
-        return text[: text.index("## Derivation")]
-
-    for case, laws in (
-        (
-            BUSY,
-            (
-                r"Viscous damping at joint 2 is the couple $-b_{2} \dot{\varphi}_{2}$",
-                r"A motor at joint 1 is the couple $\tau_{M,1} \sin {\Omega_{1} t}$",
-                r"A torsional spring at joint 3 is the couple $-k_{3} \left(\varphi_{3} - "
-                r"\varphi_{0,3}\right)$",
-                r"its moment of inertia about its mass centre is $I_{p}$",
-            ),
-        ),
-        (
-            AIRY,
-            (
-                r"J_{1} \ddot{\varphi}_{1}",
-                r"Joint 2 is locked: a couple $\Lambda_{2}$",
-                r"$w_{0,2}$ where the link begins, $w_{1,2}$ where the link ends",
-                r"the wind $(v_{x,2}, 0)$",
-            ),
-        ),
-        (SHAKEN, (r"$\left(0, \hat{y}_{A} \sin {\Omega_{y} t}\right)$",)),
-        (LEVEL, ("Nothing acts on the chain but gravity and the joint that holds it.",)),
-    ):
-        text = stated(case)
-        assert r"\varepsilon" not in text
-        for law in laws:
-            assert law in text, law
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        (BUSY, r"Viscous damping at joint 2 is the couple $-b_{2} \dot{\varphi}_{2}$"),
+        (BUSY, r"A motor at joint 1 is the couple $\tau_{M,1} \sin {\Omega_{1} t}$"),
+        (BUSY, r"at joint 3 is the couple $-k_{3} \left(\varphi_{3} - \varphi_{0,3}\right)$"),
+        (BUSY, r"its moment of inertia about its mass centre is $I_{p}$"),
+        (AIRY, r"J_{1} \ddot{\varphi}_{1}"),
+        (AIRY, r"Joint 2 is locked: a couple $\Lambda_{2}$"),
+        (AIRY, r"$w_{0,2}$ where the link begins, $w_{1,2}$ where the link ends"),
+        (AIRY, r"the wind $(v_{x,2}, 0)$"),
+        (SHAKEN, r"$\left(0, \hat{y}_{A} \sin {\Omega_{y} t}\right)$"),
+        (LEVEL, "Nothing acts on the chain but gravity and the joint that holds it."),
+    ],
+)
+@pytest.mark.every_value("words")
+def test_a_worksheet_states_what_acts_and_what_its_symbols_are(case: pc.Case, words: str) -> None:
+    text = asked(case).markdown().partition("## Derivation")[0]
+    assert words in text
+    assert r"\varepsilon" not in text
 
 
 def test_without_converters_there_is_markdown_with_its_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    files = Derivation(LEVEL.scene).report(LEVEL, str(tmp_path / "new"), worksheet=True)
+    files = derivation(LEVEL.scene).report(LEVEL, str(tmp_path / "new"), worksheet=True)
     names = [path.name for path in files]
     assert names[:2] == ["report.md", "worksheet.md"]
     assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(names)
@@ -227,16 +206,17 @@ def test_a_converter_that_fails_is_told_of_and_costs_nothing_else(
     broken.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.warns(pc.PendcoreWarning, match=r"report\.html is not written: .*out of order"):
-        files = Derivation(LEVEL.scene).report(LEVEL, tmp_path / "new")
+        files = derivation(LEVEL.scene).report(LEVEL, tmp_path / "new")
     assert files[0].name == "report.md"
     assert not [path for path in files if path.suffix in (".html", ".pdf")]
 
 
 @needs_pandoc
 @pytest.mark.outside_build
-def test_the_page_needs_no_other_file_and_no_network(handed_out: Any) -> None:
+def test_the_page_needs_no_other_file_and_no_network(handed_out: Any, tmp_path: Path) -> None:
     whole = handed_out[2]
-    text = conversion.page(whole)
+    conversion.page(whole, tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text()
     assert text.count("<math") > len(displayed(whole))
     assert all(
         source.startswith("data:image/svg+xml;base64,")
@@ -257,16 +237,15 @@ def test_the_page_needs_no_other_file_and_no_network(handed_out: Any) -> None:
 @pytest.mark.outside_build
 @pytest.mark.parametrize("name", ["textbook", "busy"])
 def test_the_pdf_is_made(name: str, tmp_path: Path) -> None:
-    case, engine = CASES[name], conversion.latex_engine()
+    engine = conversion.latex_engine()
     assert engine is not None
-    document = report(Derivation(case.scene), case, motion.solved(case))
-    conversion.pdf(document, engine, tmp_path / "report.pdf")
+    conversion.pdf(reported(CASES[name]), engine, tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_every_reader_has_the_figures_and_no_table_is_parted_by_the_end_of_a_page() -> None:
     """Room for a table is asked for before it, or before the paragraph that leads to it."""
-    document = report(Derivation(LEVEL.scene), LEVEL, motion.solved(LEVEL))
+    document = reported(LEVEL)
     for reader, suffix in ((Reader.PEOPLE, "png"), (Reader.HTML, "svg"), (Reader.PDF, "pdf")):
         found = re.findall(r"!\[.*?\]\((\w+)\.(\w+)\)", document.markdown(reader))
         assert found == [(drawing.name, suffix) for drawing in document.drawings]

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from handed_out_cases import CASES
+from handed_out_cases import CASES, drawn
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
-from pendcore.derive import Derivation
-from pendcore.derive.report import drawing, mechanism
-from pendcore.derive.report.figures import Figures, whole_ticks
+from pendcore.derive.report import drawing
+from pendcore.derive.report.motion import whole_ticks
 
 pytestmark = pytest.mark.unsanitized
 
@@ -25,22 +24,22 @@ def test_arrows_point_the_way_that_counts_as_positive(
     n: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On link 1 F_01 and F_21 point along +x and +y; on link 2 F_21 is the other way round."""
-    drawn: list[list[tuple[str, list[float]]]] = []
-    sketch, arrow = drawing.sketch, drawing.arrow
+    sheets: list[list[tuple[str, list[float]]]] = []
+    sketch, arrow = drawing.Sketch, drawing.arrow
 
     def begun(*given: Any) -> Any:
-        drawn.append([])
+        sheets.append([])
         return sketch(*given)
 
     def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
-        drawn[-1].append((text, np.sign(np.round(along, 9)).tolist()))
+        sheets[-1].append((text, np.sign(np.round(along, 9)).tolist()))
         arrow(on, start, along, text, *more, **how)
 
-    monkeypatch.setattr(drawing, "sketch", begun)
+    monkeypatch.setattr(drawing, "Sketch", begun)
     monkeypatch.setattr(drawing, "arrow", looked_at)
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
-    Figures(Derivation(scene), [0.5] * n).free_bodies()
-    for i, arrows in enumerate(drawn, start=1):
+    drawn("free_bodies", scene, [0.5] * n)
+    for i, arrows in enumerate(sheets, start=1):
         near, far = ("01" if i == 1 else f"{i}{i - 1}"), f"{i + 1}{i}"
         sign = 1.0 if i == 1 else -1.0
         expected = {f"$m_{{{i}}} g$": [0.0, 1.0]}
@@ -48,18 +47,17 @@ def test_arrows_point_the_way_that_counts_as_positive(
         if i < n:
             expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
         assert dict(arrows) == expected
-    assert len(drawn) == n
+    assert len(sheets) == n
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
     case = CASES[name]
-    derivation = Derivation(case.scene)
-    (axes,) = Figures(derivation, case.q0).mechanism().figure.axes
+    (axes,) = drawn("mechanism", case.scene, case.q0).axes
     assert axes.yaxis_inverted()
     names = {text.get_text() for text in axes.texts}
     assert {"$A$", "$x$", "$y$", "$0$"} <= names
-    assert {f"$q_{{{i}}}$" for i in range(1, derivation.n + 1)} <= names
+    assert {f"$q_{{{i}}}$" for i in range(1, len(case.q0) + 1)} <= names
     pins = [p.center for p in axes.patches if getattr(p, "radius", 0) and p.get_zorder() == 6]
     expected = case.simulate().positions()[0]
     np.testing.assert_allclose(pins, expected, atol=1e-12)
@@ -79,16 +77,17 @@ def test_names_in_figures_lie_on_nothing(seed: int) -> None:
         acting += [effects.DrivenPivot(y=effects.Sinusoid(0.02, 80.0))]
         acting += [effects.RodDrag(link=n, drag_coefficient=1.2, diameter=0.03)]
     scene = pc.Scene(links=links, effects=acting * (seed % 4 != 3))
-    figures = Figures(Derivation(scene), list(q))
-    chain = mechanism.joints(scene, q)
-    for figure, free in ((figures.mechanism().figure, False), (figures.free_bodies().figure, True)):
+    chain = scene.positions(0.0, q)
+    chain -= chain[0]
+    for what in ("mechanism", "free_bodies"):
+        figure = drawn(what, scene, q)
         figure.draw_without_rendering()
         for i, axes in enumerate(figure.axes):
             boxes = [text.get_window_extent() for text in axes.texts if text.get_text()]
             for k, box in enumerate(boxes):
                 assert not any(box.overlaps(other) for other in boxes[:k]), axes.texts[k]
             pairs = list(pairwise(chain))
-            if free:
+            if what == "free_bodies":
                 pairs = [(start - start, end - start) for start, end in pairs][i : i + 1]
             for ends in pairs:
                 rod = MarkedPath(axes.transData.transform(np.array(ends)))

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore.derive import Derivation
-from pendcore.derive.report import motion, report
+from handed_out_cases import reported, solved
+from pendcore.derive.report import motion
+from symbolic_scenes import derivation
 
 pytestmark = pytest.mark.unsanitized
 
@@ -25,10 +26,6 @@ def case(n: int, *effects: Any, q0: Any = (0.3, 0.4, 0.6), **more: Any) -> pc.Ca
     return pc.Case(scene=scene, q0=q0[:n], t_span=(0, 2), **more)
 
 
-def told(of: pc.Case) -> str:
-    return report(Derivation(of.scene), of, motion.solved(of)).markdown()
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -40,7 +37,7 @@ def told(of: pc.Case) -> str:
     ],
 )
 def test_the_method_is_told_in_words(options: dict[str, Any], words: str) -> None:
-    assert words in motion.how(motion.solved(case(1, options=options)))
+    assert words in motion.how(solved(case(1, options=options)))
 
 
 @pytest.mark.parametrize("t_span", [(0, 500), (3, -500)])
@@ -49,11 +46,11 @@ def test_a_run_that_ends_early_says_why_and_is_drawn_as_far_as_it_went(
     options: Any, t_span: Any
 ) -> None:
     of = pc.Case(scene=DAMPED, q0=0.5, t_span=t_span, options=options)
-    solution = motion.solved(of)
+    solution = solved(of)
     assert solution.status in ("event", "max_steps")
     assert len(solution.t) == motion.POINTS
     assert solution.t[-1] == solution.t_reached != solution.t_span[1]
-    text = report(Derivation(DAMPED), of, solution).markdown()
+    text = reported(of).markdown()
     assert solution.message in text
     assert "| change of $T + V$ | $0$ |" not in text
     ledger = solution.energy().ledger
@@ -67,7 +64,7 @@ def test_a_run_that_does_not_leave_its_start_has_no_curves_and_is_warned_of(
     monkeypatch.setenv("PATH", "")
     of = pc.Case(scene=DAMPED, q0=0.5, t_span=(0, 5), options={"time_limit": 1e-9})
     with pytest.warns(pc.PendcoreWarning, match="^the run is not complete") as warned:
-        files = Derivation(DAMPED).report(of, tmp_path, worksheet=True)
+        files = derivation(DAMPED).report(of, tmp_path, worksheet=True)
     assert len(warned) == 1
     assert {path.stem for path in files if path.suffix == ".png"} == {
         "mechanism", "free_bodies", "links", "axes"}  # fmt: skip
@@ -83,7 +80,7 @@ def test_a_run_that_takes_no_time_is_refused() -> None:
 
 def test_the_balance_of_the_energy_is_that_of_the_run() -> None:
     of = case(2, fx.ViscousJoint(joint=1, damping=0.1), fx.Motor(joint=2, constant=1.0))
-    text, energy = told(of), motion.solved(of).energy()
+    text, energy = reported(of).markdown(), solved(of).energy()
     assert energy.ledger is not None
     for words, value in (
         ("change of $T + V$", energy.total[-1] - energy.total[0]),
@@ -95,7 +92,7 @@ def test_the_balance_of_the_energy_is_that_of_the_run() -> None:
 
 
 def test_a_run_at_rest_is_said_to_be_one() -> None:
-    text = told(case(2, q0=np.radians([90.0, 90.0])))
+    text = reported(case(2, q0=np.radians([90.0, 90.0]))).markdown()
     assert "$-0.0000$" not in text
     assert r"the largest kinetic energy is $0\;\text{J}$" in text
     assert r"|\mathbf{F}_{01}| = 19.61\;\text{N}$ throughout" in text
@@ -118,7 +115,7 @@ def sizes(of: pc.Case, times: Any) -> Any:
     ids=["textbook", "shaken", "rk4"],
 )
 def test_the_largest_reactions_are_those_of_the_curve_to_four_digits(of: pc.Case) -> None:
-    solution, text = motion.solved(of), told(of)
+    solution, text = solved(of), reported(of).markdown()
     t, step = np.linspace(*of.t_span, 40_001, retstep=True)
     found = sizes(of, t)
     for i, peak in enumerate(solution.largest_reactions()):
@@ -134,11 +131,13 @@ def test_the_largest_reactions_are_those_of_the_curve_to_four_digits(of: pc.Case
 def test_small_numbers_are_printed_and_rounding_of_0_is_not() -> None:
     rods = [ROD, pc.Link(mass=1e-8, length=1e-3)]
     small = pc.Case(scene=pc.Scene(links=rods), q0=0.3, t_span=(0, 0.01))
-    assert r"M_{22} &= 3.33333 \times 10^{-15}" in told(small).split("### At the start")[1]
+    assert (
+        r"M_{22} &= 3.33333 \times 10^{-15}"
+        in reported(small).markdown().split("### At the start")[1]
+    )
     for degrees in ((90.0, 90.0), (180.0, 90.0), (-90.0, -90.0), (90.0, 0.0)):
-        start = (
-            told(case(2, q0=np.radians(degrees))).split("### At the start\n")[1].split("\n##")[0]
-        )
+        text = reported(case(2, q0=np.radians(degrees))).markdown()
+        start = text.split("### At the start\n")[1].split("\n##")[0]
         before, after = start.split("The two differ by at most")
         assert not re.search(r"10\^\{-(1[2-9]|[2-9]\d)\}", before), before
         assert "printed as 0" in after

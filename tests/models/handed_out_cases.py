@@ -1,9 +1,16 @@
-"""The cases of the handouts in the tests."""
+"""The cases of the handouts in the tests, and what they are handed out as."""
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 import pendcore as pc
+from pendcore.derive.document import Document
+from pendcore.derive.narration.page import Page
+from pendcore.derive.report import bodies, motion, report, worksheet
+from symbolic_scenes import derivation
 
 effects = pc.effects
 BUSY = pc.Case(
@@ -54,3 +61,26 @@ CASES = {
     "airy": AIRY,
     "shaken": SHAKEN,
 }
+
+
+@cache
+def solved(case: pc.Case) -> pc.Solution:
+    """The run of a case as its report has it."""
+    return motion.solved(case)[0]
+
+
+@cache
+def reported(case: pc.Case) -> Document:
+    """The report of a case."""
+    return report(derivation(case.scene), case, solved(case))
+
+
+@cache
+def asked(case: pc.Case) -> Document:
+    """The worksheet of a case."""
+    return worksheet(derivation(case.scene), case, solved(case))
+
+
+def drawn(what: str, scene: pc.Scene, q: Any) -> Any:
+    """The figure of a scene: its mechanism or its free_bodies."""
+    return getattr(bodies, what)(Page(derivation(scene)), q).figure

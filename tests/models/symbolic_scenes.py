@@ -145,23 +145,26 @@ def states(scene: pc.Scene, seed: int, count: int = 3) -> list[State]:
     return found
 
 
-@cache
+derivation = cache(Derivation)
+"""The derivation of a scene, made once."""
+
+
 def derived(name: str, n: int) -> Derivation:
     """The derivation of a chain, for any numbers."""
-    return Derivation(scene(name, n, seed=0))
+    return derivation(scene(name, n, seed=0))
 
 
 class Evaluated:
     """Expressions of a derivation, in forty digits, for the numbers of any such scene."""
 
-    def __init__(self, derivation: Derivation, expressions: list[Any]) -> None:
-        s = derivation.symbols
+    def __init__(self, of: Derivation, expressions: list[Any]) -> None:
+        s = of.symbols
         self._symbols = [s.t, *s.q, *s.qd, *s.qdd, *s.values]
         self._function = sympy.lambdify(self._symbols, expressions, modules="mpmath", cse=True)
 
     def __call__(self, scene: pc.Scene, state: State, qdd: Any = None) -> list[Any]:
         """Return the values; the numbers of the scene are by the names of its own derivation."""
-        values = Derivation(scene).values
+        values = derivation(scene).values
         parameters = [values[symbol] for symbol in self._symbols if symbol in values]
         n = len(scene.links)
         with mpmath.workdps(DIGITS):
@@ -169,9 +172,9 @@ class Evaluated:
             return list(self._function(*map(mpmath.mpf, [*given, *parameters])))
 
 
-def named_in_order(derivation: Derivation) -> list[Any]:
+def named_in_order(of: Derivation) -> list[Any]:
     """The accelerations by `shared`, put together again."""
     known: dict[Any, Any] = {}
-    for symbol, value in derivation.shared:
+    for symbol, value in of.shared:
         known[symbol] = value.xreplace(known)
-    return [a.xreplace(known) for a in derivation.shared_accelerations]
+    return [a.xreplace(known) for a in of.shared_accelerations]

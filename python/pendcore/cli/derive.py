@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -102,10 +103,9 @@ def _text(derivation: Any, args: argparse.Namespace) -> str:
 
 def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:
     folder = folder_of(args)
-    write = pendcore.derive.report.write_report
     with new_folder(folder), blamed_on_usage(), named_if_lost(folder):
-        made = write(derivation, case, folder, with_worksheet=args.worksheet)
-    print(f"written to {folder}: {', '.join(path.name for path in made.files)}", file=sys.stderr)
-    if not pendcore.derive.report.conversion.has_pandoc():
+        made = derivation.report(case, folder, worksheet=args.worksheet)
+    print(f"written to {folder}: {', '.join(path.name for path in made)}", file=sys.stderr)
+    if shutil.which("pandoc") is None:
         print("no .html and .pdf: these need pandoc, which is not installed", file=sys.stderr)
-    return 1 if made.complaint or made.left_out else 0
+    return 0 if made.is_whole else 1

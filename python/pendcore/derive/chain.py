@@ -8,14 +8,12 @@ respect to time, nothing else: the textbook's ``diff(rC1, t)``.
 
 from __future__ import annotations
 
-from functools import cached_property
 from itertools import pairwise
 
 from sympy import Expr, Integer, Symbol, cos, diff, expand, sin
 from sympy.simplify.fu import TR8
 
-from pendcore.derive.notation import DOTTED, Notation
-from pendcore.derive.writing import ACCELERATION, ANGLE, RATE
+from pendcore.derive.notation import Notation
 
 Vector = tuple[Expr, Expr]
 """Components along x (right) and y (down)."""
@@ -52,6 +50,17 @@ class Chain:
     ``path`` is the position of the pivot, a function of time alone, m. The pivot itself is given by
     symbols, ``x_A`` and ``y_A``, or 0 along an axis on which it does not move; the attribute
     ``path`` holds these symbols and those of their rates, each with its function of time.
+
+    Attributes
+    ----------
+    pivot_is_fixed : bool
+        Whether the pivot stays at the origin.
+    joints, joint_velocities : list of (Expr, Expr)
+        P_0, ..., P_n, the pivot, joints and tip, m, and their velocities, m/s.
+    centers, center_velocities, center_accelerations : list of (Expr, Expr)
+        C_1, ..., C_n, the mass centres, m, their velocities, m/s, and accelerations, m/s^2.
+    tip_acceleration : (Expr, Expr)
+        The acceleration of P_n, where a payload is, m/s^2.
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:
@@ -60,15 +69,22 @@ class Chain:
         self._rates: dict[Symbol, Expr] = {s.t: Integer(1)}
         for rows in ((s.q, s.qd), (s.qd, s.qdd)):
             self._rates |= dict(zip(*rows, strict=True))
-        self.pivot: Vector = self._along("x", path[0]), self._along("y", path[1])
+        pivot: Vector = self._along("x", path[0]), self._along("y", path[1])
+        self.pivot_is_fixed = pivot == (0, 0)
+        self.joints, self.centers = [pivot], list[Vector]()
+        for angle, length, center in zip(s.q, s.lengths, s.centers, strict=True):
+            x, y = self.joints[-1]
+            for points, distance in ((self.joints, length), (self.centers, center)):
+                points.append((x + distance * cos(angle), y + distance * sin(angle)))
+        self.joint_velocities = [*map(self.velocity, self.joints)]
+        self.center_velocities = [*map(self.velocity, self.centers)]
+        self.center_accelerations = [*map(self.velocity, self.center_velocities)]
+        self.tip_acceleration = self.velocity(self.joint_velocities[-1])
 
     def _along(self, axis: str, law: Expr) -> Expr:
         if law == 0:
             return law
-        symbols = [
-            self.notation.symbol(f"{axis}{dots}_A", f"{shown.format(axis)}_{{A}}", kind)
-            for (dots, shown), kind in zip(DOTTED.items(), (ANGLE, RATE, ACCELERATION), strict=True)
-        ]
+        symbols = self.notation.moving(axis, "_A", "A")
         self.path |= {symbol: law.diff(self.notation.t, k) for k, symbol in enumerate(symbols)}
         self._rates |= dict(pairwise(symbols))
         return symbols[0]
@@ -81,53 +97,8 @@ class Chain:
         """Return the velocity of a point, m/s."""
         return expand(self.rate(point[0])), expand(self.rate(point[1]))
 
-    @property
-    def pivot_is_fixed(self) -> bool:
-        """Whether the pivot stays at the origin."""
-        return self.pivot == (0, 0)
-
     def joint(self, joint: int) -> tuple[Expr, Expr, Expr]:
         """Return phi_j = q_j - q_(j-1) of a joint, rad, its rate, and its acceleration."""
         s, i = self.notation, joint - 1
         phi, w, a = (x[i] - (x[i - 1] if i else 0) for x in (s.q, s.qd, s.qdd))
         return phi, w, a
-
-    @cached_property
-    def joints(self) -> tuple[Vector, ...]:
-        """P_0, ..., P_n: pivot, joints and tip, m."""
-        points = [self.pivot]
-        for i, length in enumerate(self.notation.lengths):
-            points.append(self._beyond(points[-1], i, length))
-        return tuple(points)
-
-    @cached_property
-    def centers(self) -> tuple[Vector, ...]:
-        """C_1, ..., C_n: mass centres of the links, m."""
-        return tuple(
-            self._beyond(self.joints[i], i, distance)
-            for i, distance in enumerate(self.notation.centers)
-        )
-
-    @cached_property
-    def joint_velocities(self) -> tuple[Vector, ...]:
-        """The velocities of P_0, ..., P_n, m/s."""
-        return tuple(map(self.velocity, self.joints))
-
-    @cached_property
-    def center_velocities(self) -> tuple[Vector, ...]:
-        """The velocities of C_1, ..., C_n, m/s."""
-        return tuple(map(self.velocity, self.centers))
-
-    @cached_property
-    def center_accelerations(self) -> tuple[Vector, ...]:
-        """The accelerations of C_1, ..., C_n, m/s^2."""
-        return tuple(map(self.velocity, self.center_velocities))
-
-    @cached_property
-    def tip_acceleration(self) -> Vector:
-        """The acceleration of P_n, where a payload is, m/s^2."""
-        return self.velocity(self.joint_velocities[-1])
-
-    def _beyond(self, point: Vector, i: int, distance: Expr) -> Vector:
-        angle = self.notation.q[i]
-        return point[0] + distance * cos(angle), point[1] + distance * sin(angle)

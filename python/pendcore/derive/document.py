@@ -47,7 +47,7 @@ class Displayed(NamedTuple):
 
 
 class Blank(NamedTuple):
-    """The left side of an equation, and so many lines for its right side."""
+    """Lines to write on, so many of them, beside and below the left side of an equation if any."""
 
     latex: str
     number: str | None = None
@@ -60,12 +60,6 @@ class Table(NamedTuple):
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     columns: str
-
-
-class Space(NamedTuple):
-    """So many empty lines to write on."""
-
-    lines: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +75,7 @@ class Drawing:
         return f"{self.name}.{reader.value}"
 
 
-Block: TypeAlias = Heading | Paragraph | Displayed | Blank | Table | Drawing | Space
+Block: TypeAlias = Heading | Paragraph | Displayed | Blank | Table | Drawing
 
 _LINE_OF_HTML = '<div class="line"></div>\n'
 _LINE_OF_LATEX = "\\noindent\\mbox{}\\hrulefill\\par\\vspace{4mm}\n"
@@ -141,6 +135,10 @@ def _written(block: Block, reader: Reader) -> str:
                 return f"::: equation\n$${latex}$$\n\n[({number})]{{.number}}\n:::"
             edge = "\n" if reader is Reader.PEOPLE else ""
             return f"$${edge}{latex}{'' if reader is Reader.HTML else tag}{edge}$$"
+        case Blank("", _, lines):
+            if reader is Reader.PEOPLE:
+                return "\n\n".join(["_" * 60] * lines)
+            return _raw((_LINE_OF_LATEX if tex else _LINE_OF_HTML) * lines, reader)
         case Blank(latex, number, lines):
             left, tag = rf"$\displaystyle {latex} =$", f" ({number})" if number else ""
             first = f"{left} {'_' * 40}{tag}"
@@ -148,12 +146,8 @@ def _written(block: Block, reader: Reader) -> str:
                 first = f"::: blank\n{left} []{{.rule}}{tag}\n:::"
             elif tex:
                 first = _raw(f"\\noindent {left} \\hrulefill{tag}\\par\\vspace{{4mm}}\n", reader)
-            more = [_written(Space(lines - 1), reader)] if lines > 1 else []
+            more = [_written(Blank("", lines=lines - 1), reader)] if lines > 1 else []
             return "\n\n".join([first, *more])
-        case Space(lines):
-            if reader is Reader.PEOPLE:
-                return "\n\n".join(["_" * 60] * lines)
-            return _raw((_LINE_OF_LATEX if tex else _LINE_OF_HTML) * lines, reader)
         case Table(head, rows, columns):
             rules = ["--:" if column == "r" else ":--" for column in columns]
             return "\n".join(f"| {' | '.join(row)} |" for row in (head, rules, *rows))
@@ -171,6 +165,6 @@ def _lines_together(block: Block, following: Block | None) -> int:
     """Return how many lines a page must have left: for a table, or a lead-in and what follows."""
     if isinstance(block, Table):
         return min(len(block.rows) + 3, A_PAGE)
-    if isinstance(block, Paragraph) and isinstance(following, (Table, Displayed, Blank, Space)):
+    if isinstance(block, Paragraph) and isinstance(following, (Table, Displayed, Blank)):
         return 1 + len(block.text) // 90 + (_lines_together(following, None) or 4)
     return 0

@@ -144,12 +144,8 @@ class Motion:
     def by_entries(self) -> tuple[Expr, ...]:
         """The accelerations in the symbols of `named`, from Cramer's rule."""
         matrix, right = self._free
-        free = []
-        for k in range(matrix.rows):
-            replaced = matrix.as_mutable()
-            replaced[:, k] = right
-            free.append(expand(replaced.det(method="berkowitz")) / self.determinant)
-        return tuple(self.turning_together * ImmutableMatrix(matrix.rows, 1, free))
+        free = (matrix.adjugate(method="berkowitz") * right).applyfunc(expand) / self.determinant
+        return tuple(self.turning_together * free)
 
     @cached_property
     def accelerations(self) -> tuple[Expr, ...]:

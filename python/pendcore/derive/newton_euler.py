@@ -63,6 +63,10 @@ class NewtonEuler:
     ----------
     forces : tuple of (Symbol, Symbol)
         The unknown forces, N: F_01, F_21, F_32, ...
+    payload : PayloadEquations or None
+        The body at the tip.
+    near_forces, far_forces : list of (Expr, Expr)
+        The force on each link where it begins, F_01, F_12 = -F_21, ..., and where it ends, N.
     loads : list of LinkLoad
         The forces on links and their moments.
     locked, holding : list of int, dict
@@ -74,8 +78,7 @@ class NewtonEuler:
     def __init__(self, chain: Chain, laws: Sequence[Law]) -> None:
         self.chain, self.laws = chain, tuple(laws)
         self.notation, self.n = chain.notation, chain.notation.n
-        pairs = ["01", *(f"{i + 1}{i}" if i < 9 else f"{i + 1}_{i}" for i in range(1, self.n))]
-        self.forces = tuple(map(self._force, pairs))
+        self.forces = tuple(map(self._force, ["01", *(f"{i + 1}{i}" for i in range(1, self.n))]))
         self.loads: list[LinkLoad] = [law.load for law in laws if law.load is not None]
         self.locked = sorted({law.effect.joint for law in laws if law.locks})
         symbol = self.notation.symbol
@@ -84,15 +87,16 @@ class NewtonEuler:
         for law in laws:
             if law.armature is not None:
                 self.armatures[law.effect.joint - 1] += law.armature
+        self.payload = self._payload()
+        at_tip = (NOTHING, NOTHING) if self.payload is None else self.payload.force
+        self.near_forces = [self.forces[0], *((-x, -y) for x, y in self.forces[1:])]
+        self.far_forces = [*self.forces[1:], at_tip]
 
     def _force(self, pair: str) -> tuple[Symbol, Symbol]:
-        shown = pair.replace("_", ",")
-        x, y = (self.notation.symbol(f"F{pair}{axis}", f"F_{{{shown}{axis}}}") for axis in "xy")
+        x, y = (self.notation.symbol(f"F{pair}{axis}", f"F_{{{pair}{axis}}}") for axis in "xy")
         return x, y
 
-    @cached_property
-    def payload(self) -> PayloadEquations | None:
-        """The body at the tip, if there is one."""
+    def _payload(self) -> PayloadEquations | None:
         found = [law.payload for law in self.laws if law.payload is not None]
         if not found:
             return None
@@ -120,7 +124,7 @@ class NewtonEuler:
     @cached_property
     def definitions(self) -> tuple[Definition, ...]:
         """All symbols that stand for laws, each in terms of those before it."""
-        units = {0: "m", 1: "m/s", 2: "m/s^2"}
+        units = ("m", "m/s", "m/s^2")  # by the number of d in a name
         path = (
             Definition(symbol, law, f"motion of the pivot, {units[symbol.name.count('d')]}")
             for symbol, law in self.chain.path.items()
@@ -143,17 +147,6 @@ class NewtonEuler:
             found -= self.payload.inertia * self.notation.qdd[link - 1]
         return found
 
-    def near_force(self, link: int) -> Vector:
-        """Return the force on a link where it begins: F_01, or F_12 = -F_21."""
-        x, y = self.forces[link - 1]
-        return (x, y) if link == 1 else (-x, -y)
-
-    def far_force(self, link: int) -> Vector:
-        """Return the force on a link where it ends, from the next link or from the payload."""
-        if link < self.n:
-            return self.forces[link]
-        return (NOTHING, NOTHING) if self.payload is None else self.payload.force
-
     def weight(self, mass: Expr) -> Vector:
         """Return the weight of a mass: downward, towards +y."""
         return NOTHING, mass * self.notation.gravity
@@ -167,16 +160,12 @@ class NewtonEuler:
         s, chain = self.notation, self.chain
         mass, inertia, turning = s.masses[link - 1], s.inertias[link - 1], s.qdd[link - 1]
         begin, end, center = chain.joints[link - 1], chain.joints[link], chain.centers[link - 1]
-        near, far, weight = self.near_force(link), self.far_force(link), self.weight(mass)
+        near, far = self.near_forces[link - 1], self.far_forces[link - 1]
+        weight = self.weight(mass)
         loads = [load for load in self.loads if load.link == link]
         acceleration = chain.center_accelerations[link - 1]
-        x, y = (
-            Balance(
-                mass * acceleration[k],
-                near[k] + far[k] + weight[k] + sum(load.force[k] for load in loads),
-            )
-            for k in (0, 1)
-        )
+        forces = [near, far, weight, *(load.force for load in loads)]
+        x, y = (Balance(mass * acceleration[k], sum(f[k] for f in forces)) for k in (0, 1))
         about_pivot = link == 1 and chain.pivot_is_fixed
         point = begin if about_pivot else center
         resistance = inertia + mass * s.centers[link - 1] ** 2 if about_pivot else inertia
@@ -191,23 +180,22 @@ class NewtonEuler:
     def solved_forces(self) -> dict[Symbol, Expr]:
         """Every reaction in terms of angles, rates and accelerations: the textbook's (2.9)."""
         solved: dict[Symbol, Expr] = {}
+        bodies = [*zip(self.forces, (link.newton for link in self.links), strict=True)]
         if self.payload is not None:
-            for symbol, line in zip(self.payload.force, self.payload.newton, strict=True):
-                solved[symbol] = expand(line.acting + symbol - line.inertia)
-        for link in range(self.n, 0, -1):
-            equations = self.links[link - 1]
-            for symbol, line in zip(self.forces[link - 1], equations.newton, strict=True):
-                rest = (line.inertia - line.acting).subs(symbol, 0)  # sign F + rest = 0
-                sign = 1 if link == 1 else -1
+            bodies.append((self.payload.force, self.payload.newton))
+        for forces, newton in reversed(bodies):
+            sign = 1 if forces == self.forces[0] else -1  # F_01 acts on its own link
+            for symbol, line in zip(forces, newton, strict=True):
+                rest = (line.inertia - line.acting).subs(symbol, 0)  # = sign F
                 solved[symbol] = expand(sign * rest.xreplace(solved))
         return solved
 
     @cached_property
     def reactions(self) -> tuple[Vector, ...]:
         """Force on each link where it begins, N: F_01, F_12, ... as the core has them."""
+        known = self.solved_forces
         return tuple(
-            (expand(x.xreplace(self.solved_forces)), expand(y.xreplace(self.solved_forces)))
-            for x, y in map(self.near_force, range(1, self.n + 1))
+            (expand(x.xreplace(known)), expand(y.xreplace(known))) for x, y in self.near_forces
         )
 
     @cached_property

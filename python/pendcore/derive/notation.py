@@ -3,44 +3,31 @@
 The names are the textbook's, for any number of links: ``q1``, ``m1``, ``L1``, ``I_C1``, ``g``. The
 rates are plain symbols too, ``qd1`` for the rate of ``q1`` and ``qdd1`` for its acceleration, which
 keeps every derivative an ordinary partial one; LaTeX shows rates and accelerations with dots.
+
+SymPy sorts factors and terms by name. Here they are written as a textbook does: a product begins
+with what is constant, mass before length, over its numeric denominator, and goes on with rates and
+sines. In a sum, joint forces come first, then terms link by link, accelerations before rates, and
+weights last.
 """
 
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple
 
-from sympy import Expr, Rational, Symbol
+import sympy
+from sympy import Add, Expr, Integer, Mul, Rational, Symbol
 
 from pendcore import Scene
-from pendcore.derive import writing
-from pendcore.derive.writing import (
-    ACCELERATION,
-    ANGLE,
-    CONSTANT,
-    GRAVITY,
-    LENGTH,
-    MASS,
-    RATE,
-    UNKNOWN,
-)
 
-DOTTED = {"": "{}", "d": r"\dot{{{}}}", "dd": r"\ddot{{{}}}"}
-"""How LaTeX writes what the name of a symbol says by d and dd."""
+UNKNOWN, MASS, GRAVITY, CONSTANT, LENGTH, ACCELERATION, RATE, ANGLE = range(8)
+"""The kinds of symbols, in the order in which factors are written."""
 
 
 class Parameter(NamedTuple):
-    """A constant of the scene.
+    """A constant of the scene: its symbol, and its number in the scene, in ``unit``.
 
-    Attributes
-    ----------
-    symbol : sympy.Symbol
-        What stands for it in the equations.
-    value : float
-        Its number in the scene, in ``unit``.
-    unit : str
-        SI; ``"1"`` for a ratio.
-    meaning : str
-        What it is, in a few words.
+    The unit is SI, ``"1"`` for a ratio; ``meaning`` says what it is, in a few words.
     """
 
     symbol: Symbol
@@ -78,19 +65,14 @@ class Notation:
         self._ranks: dict[Symbol, tuple[int, int]] = {}
         links = [*enumerate(scene.links, start=1)]
         self.t = self.symbol("t", "t", ANGLE)
-        self.q, self.qd, self.qdd = (
-            tuple(self.symbol(f"q{dots}{i}", f"{shown.format('q')}_{{{i}}}", kind, i)
-                  for i, _ in links)
-            for (dots, shown), kind in zip(DOTTED.items(), (ANGLE, RATE, ACCELERATION), strict=True)
-        )  # fmt: skip
+        self.q, self.qd, self.qdd = zip(*(self.moving("q", i, i, i) for i, _ in links), strict=True)
+        make = self.parameter
         self.masses = tuple(
-            self.parameter(f"m{i}", f"m_{{{i}}}", link.mass, "kg", f"mass of link {i}", (MASS, i))
+            make(f"m{i}", f"m_{{{i}}}", link.mass, "kg", f"mass of link {i}", (MASS, i))
             for i, link in links
         )
         self.lengths = tuple(
-            self.parameter(
-                f"L{i}", f"L_{{{i}}}", link.length, "m", f"length of link {i}", (LENGTH, i)
-            )
+            make(f"L{i}", f"L_{{{i}}}", link.length, "m", f"length of link {i}", (LENGTH, i))
             for i, link in links
         )
         self.centers: tuple[Expr, ...] = ()
@@ -99,17 +81,15 @@ class Notation:
             center, inertia = length / 2, Rational(1, 12) * mass * length**2
             if "center" in link.particulars():
                 words = f"distance of the mass centre of link {i} from the joint where it begins"
-                name = f"c_{{{i}}}"
-                center = self.parameter(f"c{i}", name, link.center, "m", words, (LENGTH, i))
+                center = make(f"c{i}", f"c_{{{i}}}", link.center, "m", words, (LENGTH, i))
             if "inertia" in link.particulars():
                 words = f"moment of inertia of link {i} about its mass centre"
-                name = f"I_{{C_{{{i}}}}}"
-                rank = MASS, i
-                inertia = self.parameter(f"I_C{i}", name, link.inertia, "kg m^2", words, rank)
+                name = f"I_C{i}", f"I_{{C_{{{i}}}}}"
+                inertia = make(*name, link.inertia, "kg m^2", words, (MASS, i))
             self.centers += (center,)
             self.inertias += (inertia,)
         words = "acceleration of gravity"
-        self.gravity = self.parameter("g", "g", scene.gravity, "m/s^2", words, (GRAVITY, 0))
+        self.gravity = make("g", "g", scene.gravity, "m/s^2", words, (GRAVITY, 0))
 
     @property
     def values(self) -> dict[Symbol, float]:
@@ -123,6 +103,20 @@ class Notation:
         if rank is not None:
             self._ranks[made] = rank, link
         return made
+
+    def moving(
+        self, letter: str, mark: object, latex: object, link: int = 0
+    ) -> tuple[Symbol, Symbol, Symbol]:
+        """Return the symbols of a coordinate, its rate and its acceleration: q1, qd1, qdd1."""
+        position, rate, acceleration = (
+            self.symbol(f"{letter}{dots}{mark}", f"{shown}_{{{latex}}}", kind, link)
+            for dots, shown, kind in (
+                ("", letter, ANGLE),
+                ("d", rf"\dot{{{letter}}}", RATE),
+                ("dd", rf"\ddot{{{letter}}}", ACCELERATION),
+            )
+        )
+        return position, rate, acceleration
 
     def fresh(self, name: str, latex: str) -> tuple[str, str]:
         """Return a name that no symbol has yet: a second one, as of two dampers, has a number."""
@@ -145,18 +139,70 @@ class Notation:
         self.parameters.append(Parameter(symbol, float(value), unit, meaning))
         return symbol
 
-    def rank(self, symbol: Symbol) -> tuple[int, int]:
-        """Return the kind of a symbol and its link, which order factors and terms."""
-        return self._ranks.get(symbol, (UNKNOWN, 0))
-
     def latex(self, expression: Any) -> str:
-        """Write an expression in LaTeX."""
-        return writing.latex(expression, self.rank, self.latex_names)
+        """Write an expression in LaTeX, with fractions and without needless brackets."""
+        written = sympy.latex(
+            self.arranged(expression, has_bars=True), order="none", symbol_names=self.latex_names,
+            fold_func_brackets=True, long_frac_ratio=16,
+        )  # fmt: skip
+        return re.sub("^- ", "-", written)
 
     def text(self, expression: Any) -> str:
         """Write an expression as a line of text that Python and SymPy read."""
-        return writing.text(expression, self.rank)
+        return str(sympy.sstr(self.arranged(expression), order="none"))
+
+    def arranged(self, expression: Any, *, has_bars: bool = False) -> Expr:
+        """Return the same with all sums and products in order, not to be evaluated again.
+
+        With ``has_bars`` what moves stands behind a fraction's bar, and not above it.
+        """
+
+        def ordered(part: Expr) -> Expr:
+            if part.is_Add:
+                return Add(*map(ordered, self.terms(part)), evaluate=False)
+            if part.is_Mul:
+                return product(part)
+            if part.args:
+                return part.func(*map(ordered, part.args), evaluate=False)
+            return part
+
+        def product(part: Expr) -> Expr:
+            number, factors = part.as_coeff_mul(rational=False)
+            factors = sorted(factors, key=self._place_in_product)
+            lead = [x for x in factors if self._place_in_product(x)[0] <= LENGTH]
+            over = any(x.is_Pow and x.exp.could_extract_minus_sign() for x in factors)
+            if has_bars and number.is_Rational and number.q > 1 and not over and lead != factors:
+                fraction = Mul(abs(number), *map(ordered, lead), evaluate=False)
+                sign = [Integer(-1)] if number < 0 else []
+                return Mul(*sign, fraction, *map(ordered, factors[len(lead) :]), evaluate=False)
+            return Mul(*([] if number == 1 else [number]), *map(ordered, factors), evaluate=False)
+
+        return ordered(sympy.sympify(expression))
 
     def terms(self, total: Expr) -> list[Expr]:
         """Return the terms of a sum in the order in which they are written."""
-        return writing.terms(total, self.rank)
+        found = sorted(Add.make_args(total), key=self._place_in_sum)
+        if all(term.is_Symbol or (-term).is_Symbol for term in found):  # such as a joint's angle
+            found.sort(key=lambda term: not term.is_Symbol)
+        return found
+
+    def _place_in_product(self, factor: Expr) -> tuple[int, int, str]:
+        base = factor.as_base_exp()[0]
+        if base.is_Symbol:
+            return *self._rank(base), base.name
+        return (ANGLE + 1 if base.is_Add else ANGLE), 0, str(factor)
+
+    def _place_in_sum(self, term: Expr) -> tuple[object, ...]:
+        found = [(*self._rank(x), x.name) for x in term.free_symbols]
+        kinds = {kind for kind, *_ in found}
+        moving = sorted(
+            (link, kind) for kind, link, _ in found if kind in (ACCELERATION, RATE)
+        ) or sorted((link, ANGLE) for kind, link, _ in found if kind == ANGLE)
+        negative = term.could_extract_minus_sign()
+        group = 2 * negative if UNKNOWN in kinds else 3 if GRAVITY in kinds else 1
+        masses = sorted(link for kind, link, _ in found if kind == MASS)
+        return group, moving, masses, str(term)
+
+    def _rank(self, symbol: Symbol) -> tuple[int, int]:
+        """Return the kind of a symbol and its link, which order factors and terms."""
+        return self._ranks.get(symbol, (UNKNOWN, 0))

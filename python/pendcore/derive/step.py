@@ -32,18 +32,10 @@ class Formula(str):
 
 @dataclass(frozen=True, slots=True)
 class Equation:
-    """One equation.
+    """One equation: its sides, each a `sympy.Expr` or a `Formula`, which ``notation`` writes.
 
-    Attributes
-    ----------
-    lhs, rhs : sympy.Expr or Formula
-        Its sides.
-    number : str or None
-        The textbook's number, such as ``"2.1"``, if it is one of the textbook's.
-    remark : str
-        A remark on the equation; empty if there is none.
-    notation : Notation
-        Writes its sides.
+    ``number`` is the textbook's, such as ``"2.1"``, if it is one of the textbook's; ``remark`` is
+    empty if there is none.
     """
 
     lhs: Any
@@ -76,16 +68,9 @@ class Equation:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of a derivation.
+    """One step of a derivation: what is done, and why; ``equations`` are its results.
 
-    Attributes
-    ----------
-    number : int
-        From 1.
-    title, text : str
-        What is done, and why. The text holds inline LaTeX between ``$``.
-    equations : tuple of Equation
-        The results of the step.
+    Steps are counted from 1. The text holds inline LaTeX between ``$``.
     """
 
     number: int

@@ -52,9 +52,13 @@ function tomlValue(value) {
     : `${value}`.replace(/^(-?\d+)e/, "$1.0e");
 }
 
+/** The entries of a table that have a value. */
+function entriesOf(table) {
+  return Object.entries(table).filter(([, value]) => value !== undefined && value !== null);
+}
+
 function tomlTable(table) {
-  return Object.entries(table)
-    .filter(([, value]) => value !== undefined && value !== null)
+  return entriesOf(table)
     .map(([name, value]) => `${name} = ${tomlValue(value)}\n`)
     .join("");
 }
@@ -80,12 +84,10 @@ function pythonValue(value) {
 }
 
 function pythonCall(name, parameters, partOf) {
-  const given = Object.entries(parameters)
-    .filter(([, value]) => value !== undefined && value !== null)
-    .map(([key, value]) => {
-      const isPart = typeof value === "object" && !Array.isArray(value);
-      return `${key}=${isPart ? pythonCall(`pc.effects.${partOf[key]}`, value, partOf) : pythonValue(value)}`;
-    });
+  const given = entriesOf(parameters).map(([key, value]) => {
+    const isPart = typeof value === "object" && !Array.isArray(value);
+    return `${key}=${isPart ? pythonCall(`pc.effects.${partOf[key]}`, value, partOf) : pythonValue(value)}`;
+  });
   return `${name}(${given.join(", ")})`;
 }
 
@@ -108,9 +110,7 @@ export function toPython(given, kinds) {
   const { t_start, t_end, ...options } = given.run;
   lines.push(`    scene, q0=${pythonValue(given.start.q)}, qd0=${pythonValue(given.start.qd)},`);
   lines.push(`    t_span=(${t_start ?? 0}, ${t_end}),`);
-  for (const [name, value] of Object.entries(options)) {
-    if (value !== undefined && value !== null) lines.push(`    ${name}=${pythonValue(value)},`);
-  }
+  for (const [name, value] of entriesOf(options)) lines.push(`    ${name}=${pythonValue(value)},`);
   lines.push(")", "");
   return lines.join("\n");
 }

@@ -1,6 +1,6 @@
 /** A small chart on a canvas: curves in axes with units, a shade, and a line that moves along. */
 
-import { color, fitted } from "./scene_view.mjs";
+import { color, drawDisc, drawLine, fitted } from "./canvas.mjs";
 
 const LEFT = 52;
 const RIGHT = 10;
@@ -36,14 +36,17 @@ export class Chart {
     this.box = [0, 1, 0, 1];
   }
 
+  #scaled(value) {
+    return this.log ? Math.log10(value) : value;
+  }
+
   /** Curves are { name, color, x, y, dots }. */
   set(curves) {
     this.curves = curves;
-    const place = (value) => (this.log ? Math.log10(value) : value);
     let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
     for (const { x, y } of curves) {
       for (let k = 0; k < x.length; ++k) {
-        const [px, py] = [place(x[k]), place(y[k])];
+        const [px, py] = [this.#scaled(x[k]), this.#scaled(y[k])];
         if (!Number.isFinite(px) || !Number.isFinite(py)) continue;
         left = Math.min(left, px);
         right = Math.max(right, px);
@@ -66,11 +69,10 @@ export class Chart {
     pen.font = "11px system-ui, sans-serif";
     const legend = this.#legend(pen, width);
     const top = 8 + LINE * Math.min(legend.length, MOST_ROWS);
-    const place = (value) => (this.log ? Math.log10(value) : value);
     const at = (x, y) => {
-      const share = (place(y) - low) / (high - low);
+      const share = (this.#scaled(y) - low) / (high - low);
       return [
-        LEFT + ((place(x) - left) / (right - left)) * (width - LEFT - RIGHT),
+        LEFT + ((this.#scaled(x) - left) / (right - left)) * (width - LEFT - RIGHT),
         top + (this.isDown ? share : 1 - share) * (height - top - BOTTOM),
       ];
     };
@@ -83,29 +85,18 @@ export class Chart {
     for (const { x, y, color: stroke, dots } of this.curves) {
       pen.strokeStyle = pen.fillStyle = color(stroke);
       pen.lineWidth = 1.3;
-      pen.beginPath();
-      for (let k = 0; k < x.length; ++k) {
-        const [px, py] = at(x[k], y[k]);
-        if (k === 0) pen.moveTo(px, py);
-        else pen.lineTo(px, py);
-      }
-      pen.stroke();
-      if (dots)
-        for (let k = 0; k < x.length; ++k) pen.fillRect(...at(x[k], y[k]).map((p) => p - 2), 4, 4);
+      const places = Array.from(x, (one, k) => at(one, y[k]));
+      drawLine(pen, ...places);
+      if (dots) for (const [px, py] of places) pen.fillRect(px - 2, py - 2, 4, 4);
     }
     if (now !== null) {
       const [x] = at(now, 1);
       pen.strokeStyle = color("ink");
-      pen.beginPath();
-      pen.moveTo(x, top);
-      pen.lineTo(x, height - BOTTOM);
-      pen.stroke();
+      drawLine(pen, [x, top], [x, height - BOTTOM]);
     }
     for (const { x, y, color: fill } of points) {
       pen.fillStyle = color(fill);
-      pen.beginPath();
-      pen.arc(...at(x, y), 4, 0, 2 * Math.PI);
-      pen.fill();
+      drawDisc(pen, at(x, y), 4);
     }
     this.#drawLegend(pen, width, legend);
   }

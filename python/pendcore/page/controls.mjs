@@ -33,11 +33,9 @@ export function numberField({
   positive = false,
   change,
 }) {
-  const id = `field-${++counter}`;
   const step = whole ? 1 : roundStep(high - low);
   const field = element("input", {
     type: "number",
-    id,
     step: whole ? "1" : "any",
     value: String(Number(value.toPrecision(7))),
   });
@@ -60,21 +58,27 @@ export function numberField({
   };
   field.addEventListener("input", () => take(field.value, slider));
   slider.addEventListener("input", () => take(slider.value, field));
-  const label = element("label", { htmlFor: id, textContent: unit ? `${name} (${unit})` : name });
-  return element("div", { className: "parameter" }, [label, field, slider]);
+  return labelled(unit ? `${name} (${unit})` : name, field, slider);
 }
 
-function choice(name, options, value, change) {
-  const id = `field-${++counter}`;
-  const select = element(
-    "select",
-    { id },
-    options.map((one) => element("option", { value: one, textContent: one })),
-  );
+/** A name before its field, and what else belongs to it. */
+function labelled(name, field, ...more) {
+  field.id = `field-${++counter}`;
+  const label = element("label", { htmlFor: field.id, textContent: name });
+  return element("div", { className: "parameter" }, [label, field, ...more]);
+}
+
+/** A menu of values, each with the text that it shows. */
+function menuOf(options, properties = {}) {
+  const shown = options.map(([value, textContent]) => element("option", { value, textContent }));
+  return element("select", properties, shown);
+}
+
+function choice(name, words, value, change) {
+  const select = menuOf(words.map((one) => [one, one]));
   select.value = value;
   select.addEventListener("change", () => change(select.value));
-  const label = element("label", { htmlFor: id, textContent: name });
-  return element("div", { className: "parameter" }, [label, select]);
+  return labelled(name, select);
 }
 
 /**
@@ -231,17 +235,10 @@ export class Controls {
   }
 
   #more() {
-    const names = Object.keys(this.defaults);
-    const select = element(
-      "select",
-      { "aria-label": "Kind of effect" },
-      names.map((kind) =>
-        element("option", {
-          value: kind,
-          textContent: this.kinds.find((one) => one.kind === kind).name,
-        }),
-      ),
-    );
+    const named = (kind) => [kind, this.kinds.find((one) => one.kind === kind).name];
+    const select = menuOf(Object.keys(this.defaults).map(named), {
+      "aria-label": "Kind of effect",
+    });
     const add = element("button", { type: "button", textContent: "Add" });
     add.addEventListener("click", () => {
       const copy = structuredClone(this.defaults[select.value]);

@@ -22,8 +22,8 @@ from pendcore.options import OPTIONS
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "scene_view.mjs", "chart.mjs", "simulate.mjs", "curves.mjs", "known_case.mjs", "case.mjs",
-    "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
+    "canvas.mjs", "simulate.mjs", "scene_view.mjs", "chart.mjs", "curves.mjs", "known_case.mjs",
+    "case.mjs", "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"

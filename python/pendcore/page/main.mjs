@@ -9,7 +9,7 @@ import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
 import { coreBytes, LiveRun, Recording } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
-import { grid, simulateCase } from "./simulate.mjs";
+import { clamp, grid, simulateCase } from "./simulate.mjs";
 import { listenToKeys, listenToPointer, listenToView, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
@@ -150,7 +150,7 @@ class Page {
     if (!this.dragged) this.#bits();
     this.curves.set(run);
     const needed = (TRACE * this.curves.fastest) / TRACE_PARTS.angle;
-    this.traceParts = Math.ceil(Math.min(Math.max(needed, TRACE_PARTS.least), TRACE_PARTS.most));
+    this.traceParts = Math.ceil(clamp(needed, TRACE_PARTS.least, TRACE_PARTS.most));
     this.#ask();
     this.draw();
     return undefined;
@@ -266,8 +266,7 @@ class Page {
 
   #isRight(t) {
     if (this.validUntil === null) return true;
-    const forward = this.run.end >= this.run.begin;
-    return forward ? t <= this.validUntil * (1 + 1e-12) : t >= this.validUntil;
+    return this.run.direction > 0 ? t <= this.validUntil * (1 + 1e-12) : t >= this.validUntil;
   }
 
   frame(now) {
@@ -286,8 +285,7 @@ class Page {
       this.changed();
     }
     if (this.isPlaying && !this.dragged) {
-      const direction = this.run.end >= this.run.begin ? 1 : -1;
-      this.t = this.run.within(this.t + direction * passed * this.speed);
+      this.t = this.run.within(this.t + this.run.direction * passed * this.speed);
       if (this.t === this.run.end) this.play(false);
       this.draw();
     }
@@ -323,8 +321,7 @@ class Page {
 
   #path(t) {
     const { run } = this;
-    const direction = run.end >= run.begin ? 1 : -1;
-    const since = run.within(t - direction * TRACE);
+    const since = run.within(t - run.direction * TRACE);
     const times = grid(since, t, this.traceParts);
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
   }

@@ -1,6 +1,6 @@
 /** Runs of a case: by the core, or played back from what Python has computed. */
 
-import { simulateDense } from "./simulate.mjs";
+import { clamp, simulateDense } from "./simulate.mjs";
 
 /** Unpacks the module that is in the page; null if there is none. */
 export async function coreBytes() {
@@ -11,20 +11,28 @@ export async function coreBytes() {
   return new Response(stream).arrayBuffer();
 }
 
+/** What the page plays: a run from `begin` to `end`, which may be before it. */
+class Played {
+  constructor(given, begin, end, { message, success }) {
+    this.begin = begin;
+    this.end = end;
+    this.message = message;
+    this.success = success;
+    this.lengths = given.link.map((one) => one.length);
+    this.n = this.lengths.length;
+    this.direction = end >= begin ? 1 : -1;
+  }
+}
+
 /** A run that the core has made, as the page plays it. */
-export class LiveRun {
+export class LiveRun extends Played {
   constructor(core, given) {
     // The ledger changes no bit of the motion.
-    const made = simulateDense(core, given, { ledger: true });
-    this.scene = made.scene;
-    this.run = made.run;
-    this.n = given.link.length;
-    this.begin = given.run.t_start ?? 0;
-    this.end = this.run.t_reached;
-    this.message = this.run.message;
-    this.success = this.run.success;
-    this.lengths = given.link.map((one) => one.length);
-    this.accounts = this.run.accounts;
+    const { scene, run } = simulateDense(core, given, { ledger: true });
+    super(given, given.run.t_start ?? 0, run.t_reached, run);
+    this.scene = scene;
+    this.run = run;
+    this.accounts = run.accounts;
     this.count = Infinity; // it has a state at any time
   }
   free() {
@@ -36,8 +44,7 @@ export class LiveRun {
     return this.run.at([this.within(t)]).subarray(0, 2 * this.n);
   }
   within(t) {
-    const [low, high] = this.begin < this.end ? [this.begin, this.end] : [this.end, this.begin];
-    return Math.min(Math.max(t, low), high);
+    return clamp(t, Math.min(this.begin, this.end), Math.max(this.begin, this.end));
   }
   /** The states at times, a row each. */
   states(times) {
@@ -63,24 +70,18 @@ export class LiveRun {
 }
 
 /** What Python has computed, at some times: for a page without the core, and for own functions. */
-export class Recording {
+export class Recording extends Played {
   constructor(recorded, given) {
+    super(given, recorded.t[0], recorded.t.at(-1), recorded);
     this.recorded = recorded;
-    this.n = given.link.length;
-    this.begin = recorded.t[0];
-    this.end = recorded.t[recorded.t.length - 1];
-    this.message = recorded.message;
-    this.success = recorded.success;
-    this.lengths = given.link.map((one) => one.length);
     this.accounts = [];
     this.count = recorded.t.length;
   }
   free() {}
   #nearest(t) {
-    const { t: times } = this.recorded;
-    const last = times.length - 1;
+    const last = this.count - 1;
     const share = (t - this.begin) / (this.end - this.begin || 1);
-    return Math.min(Math.max(Math.round(share * last), 0), last);
+    return clamp(Math.round(share * last), 0, last);
   }
   within(t) {
     return this.recorded.t[this.#nearest(t)];

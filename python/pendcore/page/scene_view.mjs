@@ -1,27 +1,11 @@
 /** The picture of the chain: links, trace, arrows, ghost and neighbours, on a canvas; y points down. */
 
+import { color, drawDisc, drawLine, fitted } from "./canvas.mjs";
+import { clamp } from "./simulate.mjs";
+
 const MARGIN = 0.12; // of the total length
 const ARROW = 0.45; // of the total length, for the largest force of the run
 const ZOOMS = [0.1, 50];
-
-/** A colour of the page's style. */
-export function color(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-}
-
-/** A canvas whose units are CSS pixels, sharp on every screen. */
-export function fitted(canvas) {
-  const ratio = window.devicePixelRatio || 1;
-  const { clientWidth: width, clientHeight: height } = canvas;
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-  }
-  const pen = canvas.getContext("2d");
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, width, height);
-  return { pen, width, height };
-}
 
 export class SceneView {
   constructor(canvas) {
@@ -45,7 +29,7 @@ export class SceneView {
 
   /** Enlarges the picture; a place on the canvas, in CSS pixels, stays where it is. */
   enlarge(factor, place = this.center) {
-    const zoom = Math.min(Math.max(this.zoom * factor, ZOOMS[0]), ZOOMS[1]);
+    const zoom = clamp(this.zoom * factor, ...ZOOMS);
     const further = zoom / this.zoom - 1;
     this.move(further * (this.center[0] - place[0]), further * (this.center[1] - place[1]));
     this.zoom = zoom;
@@ -74,17 +58,20 @@ export class SceneView {
     return [this.center[0] + x * this.pixels, this.center[1] + y * this.pixels];
   }
 
+  /** Points x, y, x, y, ... as places on the canvas. */
+  #places(points) {
+    return Array.from({ length: points.length / 2 }, (_x, k) =>
+      this.#at(points[2 * k], points[2 * k + 1]),
+    );
+  }
+
   #axes(width, height, total) {
     const { pen } = this;
     pen.strokeStyle = color("line");
     pen.lineWidth = 1;
-    pen.beginPath();
     const [x, y] = this.#at(0, 0);
-    pen.moveTo(0, y);
-    pen.lineTo(width, y);
-    pen.moveTo(x, 0);
-    pen.lineTo(x, height);
-    pen.stroke();
+    drawLine(pen, [0, y], [width, y]);
+    drawLine(pen, [x, 0], [x, height]);
     pen.fillStyle = color("faint");
     pen.font = "12px system-ui, sans-serif";
     pen.fillText("x", width - 14, y - 6);
@@ -101,13 +88,7 @@ export class SceneView {
     pen.strokeStyle = stroke;
     pen.lineWidth = lineWidth;
     pen.lineJoin = "round";
-    pen.beginPath();
-    for (let k = 0; k < points.length; k += 2) {
-      const [x, y] = this.#at(points[k], points[k + 1]);
-      if (k === 0) pen.moveTo(x, y);
-      else pen.lineTo(x, y);
-    }
-    pen.stroke();
+    drawLine(pen, ...this.#places(points));
     pen.globalAlpha = 1;
   }
 
@@ -116,12 +97,7 @@ export class SceneView {
     const { pen } = this;
     pen.globalAlpha = alpha;
     pen.fillStyle = stroke;
-    for (let k = 0; k < places.length; k += 2) {
-      const [x, y] = this.#at(places[k], places[k + 1]);
-      pen.beginPath();
-      pen.arc(x, y, k === 0 ? 4 : 6, 0, 2 * Math.PI);
-      pen.fill();
-    }
+    for (const [k, place] of this.#places(places).entries()) drawDisc(pen, place, k === 0 ? 4 : 6);
     pen.globalAlpha = 1;
   }
 
@@ -138,10 +114,7 @@ export class SceneView {
       const [dx, dy] = [forces[k] * scale * this.pixels, forces[k + 1] * scale * this.pixels];
       const along = Math.hypot(dx, dy) || 1;
       const [u, v] = [dx / along, dy / along];
-      pen.beginPath();
-      pen.moveTo(x, y);
-      pen.lineTo(x + dx, y + dy);
-      pen.stroke();
+      drawLine(pen, [x, y], [x + dx, y + dy]);
       pen.beginPath();
       pen.moveTo(x + dx + 7 * u, y + dy + 7 * v);
       pen.lineTo(x + dx - 4 * v, y + dy + 4 * u);
@@ -155,7 +128,7 @@ export class SceneView {
   #neighbours({ neighbours, lengths, t, pivot }) {
     const { angles, count, n, rate, begin } = neighbours;
     const steps = angles.length / (count * n);
-    const frame = Math.min(Math.max(Math.round(Math.abs(t - begin) * rate), 0), steps - 1);
+    const frame = clamp(Math.round(Math.abs(t - begin) * rate), 0, steps - 1);
     const { pen, pixels } = this;
     const [x0, y0] = this.#at(pivot[0], pivot[1]);
     pen.globalAlpha = 0.12;

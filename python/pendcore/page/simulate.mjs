@@ -24,6 +24,11 @@ export function simulateDense(core, given, others = {}) {
   return simulateCase(core, { ...given, run }, { store: "dense", ...others });
 }
 
+/** The number of an interval that is nearest to this one. */
+export function clamp(value, low, high) {
+  return Math.min(Math.max(value, low), high);
+}
+
 /** Numbers at equal steps from one end to the other. */
 export function grid(begin, end, count) {
   return Array.from({ length: count }, (_x, k) => begin + ((end - begin) * k) / (count - 1));

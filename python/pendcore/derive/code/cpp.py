@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 from sympy import Expr, cos, cxxcode, sin
 from sympy.printing.cxx import CXX17CodePrinter
 
-from pendcore.derive.algebra import Algebra
-from pendcore.derive.code.computation import Computation, computations, powers_by_name
-from pendcore.derive.code.layout import (
-    assigned,
-    chain_in_words,
-    constants,
-    indented,
-    origin,
-    wrapped,
-)
+from pendcore.derive.code import statements
+from pendcore.derive.code.statements import Computation, indented, wrapped
+from pendcore.derive.derivation import Derivation
 
 KEYWORDS = {*CXX17CodePrinter.reserved_words, "catch", "register"}  # SymPy forgets these two
 
@@ -131,13 +123,9 @@ def write(expression: Expr) -> str:
     return str(cxxcode(expression, standard="C++17", user_functions=PRINTED_AS))
 
 
-def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum") -> str:
-    """Return the text of a C++17 header that needs the standard library alone.
-
-    Its struct has the scene's numbers as defaults, and ``accelerations``, ``right_hand_side``,
-    ``reactions``, ``energy`` and, where effects do work, ``powers``.
-    """
-    found, powers = computations(derivation), powers_by_name(derivation)
+def header(derivation: Derivation, name: str = "Chain", namespace: str = "pendulum") -> str:
+    """Return the header; `Derivation.to_cpp` says what is in it."""
+    found, powers = statements.computations(derivation), statements.powers_by_name(derivation)
     inside = {symbol.name for one in found.values() for symbol, _ in one.assignments}
     inside |= {*TAKEN, *(symbol.name for symbol in derivation.values)}
     for what, given, own in (("name", name, inside), ("namespace", namespace, {"std"})):
@@ -148,10 +136,10 @@ def header(derivation: Algebra, name: str = "Chain", namespace: str = "pendulum"
     accelerations = found["accelerations"]
     calls = sum(isinstance(value, (sin, cos)) for _, value in accelerations.assignments)
     return HEADER.format(
-        chain=chain_in_words(derivation).capitalize(), name=name, namespace=namespace,
-        n=derivation.n, origin=origin(derivation, "/// "), calls=calls,
+        chain=f"A {derivation.in_words}", name=name, namespace=namespace,
+        n=derivation.n, origin=statements.origin(derivation, "/// "), calls=calls,
         others=accelerations.operations - calls,
-        constants=constants(derivation, "  double {} = {!r};", "///< "),
+        constants=statements.constants(derivation, "  double {} = {!r};", "///< "),
         powers=_powers(powers) if powers else "",
         functions="\n".join(
             _function(derivation, what, one) for what, one in found.items() if one.results
@@ -168,7 +156,7 @@ def _powers(powers: dict[str, Any]) -> str:
     return POWERS.format(members="\n".join(members), total="\n".join(total))
 
 
-def _function(derivation: Algebra, name: str, computation: Computation) -> str:
+def _function(derivation: Derivation, name: str, computation: Computation) -> str:
     """Write a member function of t, q, qd that returns the computation's results in braces."""
     s, needs = derivation.symbols, computation.needs
     result, documentation = FUNCTIONS[name]
@@ -179,7 +167,14 @@ def _function(derivation: Algebra, name: str, computation: Computation) -> str:
             ("double", "t", (s.t,)), ("const Angles&", "q", s.q), ("const Angles&", "qd", s.qd)
         )
     )  # fmt: skip
-    body = [line for one in _statements(derivation, computation) for line in wrapped(one, "    ")]
+    lines = []
+    if accelerated:
+        lines.append("const Angles qdd = accelerations(t, q, qd);")
+    for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
+        parts = [f"{one} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs]
+        lines += [f"const double {', '.join(parts)};"] if parts else []
+    lines += statements.assigned(derivation, computation, write, "const double {} = {};", "// ")
+    body = [line for one in lines for line in wrapped(one, "    ")]
     values = [write(value) for value in computation.results]
     if name == "reactions":
         values = [f"Force{{{x}, {y}}}" for x, y in zip(values[::2], values[1::2], strict=True)]
@@ -191,14 +186,3 @@ def _function(derivation: Algebra, name: str, computation: Computation) -> str:
         documentation="\n".join(f"  /// {line}" for line in documentation.splitlines()),
         result=result, name=name, arguments=", ".join(arguments), body="\n".join(body),
     )  # fmt: skip
-
-
-def _statements(derivation: Algebra, computation: Computation) -> Iterator[str]:
-    s, needs = derivation.symbols, computation.needs
-    if needs & {*s.qdd}:
-        yield "const Angles qdd = accelerations(t, q, qd);"
-    for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "qdd")):
-        parts = [f"{one} = {whole}[{i}]" for i, one in enumerate(symbols) if one in needs]
-        if parts:
-            yield f"const double {', '.join(parts)};"
-    yield from assigned(derivation, computation, write, "const double {} = {};", "// ")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sympy import Expr, Float, Rational, Symbol, octave_code
 
-from pendcore.derive.algebra import Algebra
-from pendcore.derive.code.computation import computations
-from pendcore.derive.code.layout import assigned, chain_in_words, constants, origin, wrapped
+from pendcore.derive.code import statements
+from pendcore.derive.code.statements import wrapped
+from pendcore.derive.derivation import Derivation
 
 KEYWORDS = {
     *("break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "endfor"),
@@ -45,24 +45,20 @@ COMMENT = """\
 """
 
 
-def function_file(derivation: Algebra, name: str = "RR") -> str:
-    """Return the text of a function file for ``ode45``, such as the textbook's RR.m.
-
-    The scene's numbers stand at its top, by name, and what expressions share is computed once. The
-    file has to have the name of the function, with ``.m``.
-    """
-    computation, state = computations(derivation)["accelerations"], _state(derivation)
+def function_file(derivation: Derivation, name: str = "RR") -> str:
+    """Return the file; `Derivation.to_octave` says what is in it."""
+    computation, state = statements.computations(derivation)["accelerations"], _state(derivation)
 
     def write(expression: Expr) -> str:
         return str(octave_code(expression.xreplace(state)))
 
-    lines = [constants(derivation, "{} = {!r};", "% "), ""]
-    for line in assigned(derivation, computation, write, "{} = {};", "% "):
+    lines = [statements.constants(derivation, "{} = {!r};", "% "), ""]
+    for line in statements.assigned(derivation, computation, write, "{} = {};", "% "):
         lines += wrapped(line, "", " ...")
     return _file(derivation, name, [*map(write, computation.results)], "\n".join([*lines, ""]))
 
 
-def written_out(derivation: Algebra, name: str = "RR") -> str:
+def written_out(derivation: Derivation, name: str = "RR") -> str:
     """Return a function file as the textbook's program writes it: with numbers, nothing shared.
 
     The expressions are those of `inline_function`, so that the two can be compared.
@@ -70,27 +66,21 @@ def written_out(derivation: Algebra, name: str = "RR") -> str:
     return _file(derivation, name, _with_numbers(derivation))
 
 
-def inline_function(derivation: Algebra, name: str = "g") -> str:
-    """Return the statements that make the textbook's inline function, called `g` as there.
-
-    An inline function is one expression: the scene's numbers are put in, and nothing is shared.
-    """
-    rows = [
-        row
-        for i, text in enumerate(_with_numbers(derivation), start=1)
-        for row in (f"x({2 * i})", text)
-    ]
-    parts = [f"dx{i}dt" for i in range(1, len(rows) + 1)]
+def inline_function(derivation: Derivation, name: str = "g") -> str:
+    """Return the statements; `Derivation.to_octave_inline` says what they make."""
+    rows: dict[str, str] = {}
+    for k, text in enumerate(_with_numbers(derivation)):
+        rows |= {f"dx{2 * k + 1}dt": f"x({2 * k + 2})", f"dx{2 * k + 2}dt": text}
     pattern = ";".join(["%s"] * len(rows))
-    call = f"{name} = inline(sprintf('[{pattern}]', {', '.join(parts)}), 't', 'x');"
+    call = f"{name} = inline(sprintf('[{pattern}]', {', '.join(rows)}), 't', 'x');"
     return INLINE.format(
         **_words(derivation, name),
-        rows="\n".join(f"{part} = '{row}';" for part, row in zip(parts, rows, strict=True)),
+        rows="\n".join(f"{part} = '{row}';" for part, row in rows.items()),
         call="\n".join(wrapped(call, "", " ...")),
     )
 
 
-def _file(derivation: Algebra, name: str, accelerations: list[str], body: str = "") -> str:
+def _file(derivation: Derivation, name: str, accelerations: list[str], body: str = "") -> str:
     start = " ".join(["pi/4 0", *["pi/3 0"] * (derivation.n - 1)])
     results = []
     for i, value in enumerate(accelerations):
@@ -102,23 +92,24 @@ def _file(derivation: Algebra, name: str, accelerations: list[str], body: str = 
     )  # fmt: skip
 
 
-def _words(derivation: Algebra, name: str) -> dict[str, str]:
+def _words(derivation: Derivation, name: str) -> dict[str, str]:
     """Return what every template has."""
     if not name.isidentifier() or not name.isascii() or name.startswith("_") or name in KEYWORDS:
         raise ValueError(f"name = {name!r}: must be a name that Octave allows, such as 'RR'")
     state = "; ".join(f"q{i}; q{i}'" for i in range(1, derivation.n + 1))
-    comment = COMMENT.format(state=state, states=2 * derivation.n) + origin(derivation, "% ")
-    return {"name": name, "chain": chain_in_words(derivation), "comment": comment}
+    comment = COMMENT.format(state=state, states=2 * derivation.n)
+    comment += statements.origin(derivation, "% ")
+    return {"name": name, "chain": f"a {derivation.in_words}", "comment": comment}
 
 
-def _state(derivation: Algebra) -> dict[Symbol, Symbol]:
+def _state(derivation: Derivation) -> dict[Symbol, Symbol]:
     """Return the state in the textbook's order: x(1) = q1, x(2) = qd1, ..."""
     s = derivation.symbols
     pairs = [symbol for pair in zip(s.q, s.qd, strict=True) for symbol in pair]
     return {symbol: Symbol(f"x({i})", real=True) for i, symbol in enumerate(pairs, start=1)}
 
 
-def _with_numbers(derivation: Algebra) -> list[str]:
+def _with_numbers(derivation: Derivation) -> list[str]:
     """The accelerations written out, in x(1), x(2), ... and numbers."""
     known = _state(derivation) | {s: _exact(value) for s, value in derivation.values.items()}
     return [str(octave_code(one.xreplace(known))) for one in derivation.accelerations]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sympy.printing.numpy import NumPyPrinter
 
-from pendcore.derive.algebra import Algebra
-from pendcore.derive.code.computation import Computation, computations, powers_by_name
-from pendcore.derive.code.layout import assigned, chain_in_words, constants, origin, wrapped
+from pendcore.derive.code import statements
+from pendcore.derive.code.statements import Computation, wrapped
+from pendcore.derive.derivation import Derivation
 
 MODULE = '''\
 """{chain}: right-hand side, joint reactions, energies.
@@ -58,21 +58,16 @@ DOCUMENTATION = {
 }
 
 
-def module(derivation: Algebra) -> str:
-    """Return the text of a Python module.
-
-    The scene's numbers stand at its top, by name; ``right_hand_side(t, y)`` is for SciPy's
-    ``solve_ivp``; ``accelerations``, ``reactions``, ``energies`` and ``powers`` take ``t, q, qd``
-    with any axes after that of the links.
-    """
-    n, found = derivation.n, computations(derivation)
+def module(derivation: Derivation) -> str:
+    """Return the module; `Derivation.to_python` says what is in it."""
+    n, found = derivation.n, statements.computations(derivation)
     text = MODULE.format(
-        chain=chain_in_words(derivation).capitalize(), origin=origin(derivation), n=n,
-        constants=constants(derivation, "{} = {!r}", "# "),
+        chain=f"A {derivation.in_words}", n=n, origin=statements.origin(derivation),
+        constants=statements.constants(derivation, "{} = {!r}", "# "),
     )  # fmt: skip
     rates = [f"qdd[{i}]" for i in range(n)]
     forces = [f"force[{i}, {k}]" for i in range(n) for k in (0, 1)]
-    powers = [f'power["{name}"]' for name in powers_by_name(derivation)]
+    powers = [f'power["{name}"]' for name in statements.powers_by_name(derivation)]
     energies = ["kinetic", "potential"]
     for name, computation, made, results, returned in (
         ("accelerations", found["accelerations"], "qdd = numpy.empty_like(q)", rates, "qdd"),
@@ -90,7 +85,7 @@ def module(derivation: Algebra) -> str:
 
 
 def _body(
-    derivation: Algebra, computation: Computation, made: str, results: list[str]
+    derivation: Derivation, computation: Computation, made: str, results: list[str]
 ) -> list[str]:
     """Return the lines of a function of t, q, qd."""
     s, write = derivation.symbols, NumPyPrinter().doprint
@@ -98,11 +93,10 @@ def _body(
     for symbols, whole in ((s.q, "q"), (s.qd, "qd"), (s.qdd, "accelerations(t, q, qd)")):
         if computation.needs & {*symbols}:
             lines.append(f"{', '.join(map(str, symbols))}, = {whole}")
-    lines += assigned(derivation, computation, write, "{} = {}", "# ")
+    lines += statements.assigned(derivation, computation, write, "{} = {}", "# ")
     lines += [made] * bool(made)
-    lines += [
-        f"{name} = {write(value)}" for name, value in zip(results, computation.results, strict=True)
-    ]
+    named = zip(results, computation.results, strict=True)
+    lines += [f"{name} = {write(value)}" for name, value in named]
     body = []
     for line in lines:
         name, _, value = line.partition(" = ")

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from pendcore.derive.laws.bodies import driven_pivot, lock, payload, rotor_inertia
-from pendcore.derive.laws.couples import motor, torsional_spring, viscous_joint
+from pendcore.derive.laws import joints
 from pendcore.derive.laws.law import Definition, Law, LinkLoad, NotSmooth
 from pendcore.derive.laws.rod_drag import rod_drag
 from pendcore.derive.notation import Notation
@@ -14,10 +13,10 @@ from pendcore.derive.notation import Notation
 LAWS: dict[str, Callable[[Any, Notation], Law]] = {
     law.__name__: law
     for law in (
-        driven_pivot, lock, motor, payload, rod_drag, rotor_inertia, torsional_spring,
-        viscous_joint,
+        *(joints.driven_pivot, joints.lock, joints.motor, joints.payload, joints.rotor_inertia),
+        *(joints.torsional_spring, joints.viscous_joint, rod_drag),
     )
-}  # fmt: skip
+}
 """The laws, by the kind of effect."""
 
 OWN = "its law is a function, which has no symbols"

@@ -15,9 +15,6 @@ from pendcore.derive.notation import Notation
 class NotSmooth(Exception):
     """The effect has no law that is smooth; holds the reason, and what to do instead."""
 
-    def __init__(self, reason: str, remedy: str) -> None:
-        super().__init__(reason, remedy)
-
 
 class LinkLoad(NamedTuple):
     """A force on a link (counted from 1), N, and its moment about where the link begins, N m."""
@@ -37,46 +34,24 @@ class Definition(NamedTuple):
 
 @dataclass(frozen=True)
 class Law:
-    """What an effect does; most laws have one of these parts.
-
-    Attributes
-    ----------
-    effect : pendcore.effects.Effect
-        The effect.
-    statement : str
-        What it does, in a sentence with the law's formula between dollars.
-    couple : function of (phi, w)
-        Torque on the link beyond the effect's joint, N m; phi and w are the joint's angle and rate.
-    stored : function of phi
-        Energy that the couple stores, J; without it the couple does work.
-    definitions : function of the chain
-        Symbols in which the load and the power are written, each defined by those before it.
-    load : LinkLoad
-        A force on a link.
-    power : function of (chain, ground_force)
-        Power that the effect brings into the chain, W, besides that of its couple; ``ground_force``
-        is the force of the ground on link 1, N.
-    armature : Expr
-        Moment of inertia of a rotor that turns with the effect's joint, kg m^2.
-    payload : (Expr, Expr)
-        Mass (kg) and moment of inertia (kg m^2) of a body at the tip.
-    pivot : (Expr, Expr)
-        Position of the pivot over time, m.
-    locks : bool
-        Whether the effect locks its joint.
-    """
+    """What an effect does; most laws have one of the parts below `statement`."""
 
     effect: Any
-    statement: str
+    statement: str  # what it does, in a sentence with the law's formula between dollars
+    # Torque on the link beyond the effect's joint, N m, of the joint's angle and rate; the energy
+    # that it stores, J, of the angle: without that the couple does work.
     couple: Callable[[Expr, Expr], Expr] | None = None
     stored: Callable[[Expr], Expr] | None = None
-    definitions: Callable[[Chain], tuple[Definition, ...]] = lambda chain: ()
+    # A force on a link, and symbols for it and its power, each defined by those before it.
     load: LinkLoad | None = None
+    definitions: Callable[[Chain], tuple[Definition, ...]] = lambda chain: ()
+    # The power that the effect brings into the chain besides that of its couple, W, also of the
+    # force of the ground on link 1, N.
     power: Callable[[Chain, Vector], Expr] | None = None
-    armature: Expr | None = None
-    payload: tuple[Expr, Expr] | None = None
-    pivot: Vector | None = None
-    locks: bool = False
+    armature: Expr | None = None  # moment of inertia of a rotor that turns with the joint, kg m^2
+    payload: tuple[Expr, Expr] | None = None  # mass, kg, moment of inertia, kg m^2, at the tip
+    pivot: Vector | None = None  # the position of the pivot over time, m
+    locks: bool = False  # whether the effect locks its joint
 
 
 def sinusoid(

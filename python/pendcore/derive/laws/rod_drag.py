@@ -20,8 +20,7 @@ from sympy import Abs, Expr, Integer, Symbol
 
 from pendcore.derive.chain import Chain, Vector, across, dot, minus
 from pendcore.derive.laws.law import Definition, Law, LinkLoad
-from pendcore.derive.notation import Notation
-from pendcore.derive.writing import RATE
+from pendcore.derive.notation import RATE, Notation
 
 AT_REST = 1e-100
 """The speed that keeps D from 0, m/s."""

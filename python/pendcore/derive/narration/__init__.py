@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pendcore.derive.algebra import Algebra
+from pendcore.derive.derivation import Derivation
 from pendcore.derive.narration.kinematics import kinematics
 from pendcore.derive.narration.newton_euler import newton_euler
 from pendcore.derive.narration.page import Page
@@ -12,7 +12,7 @@ from pendcore.derive.step import Step
 PARTS = (kinematics, newton_euler, equations_of_motion, solution, first_order, energy)
 
 
-def steps(derivation: Algebra) -> tuple[Step, ...]:
+def steps(derivation: Derivation) -> tuple[Step, ...]:
     """Return the steps of a derivation."""
     page = Page(derivation)
     for part in PARTS:

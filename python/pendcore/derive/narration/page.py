@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 from sympy import Expr, Symbol
 
-from pendcore.derive.algebra import Algebra
+from pendcore.derive.derivation import Derivation
 from pendcore.derive.laws import LinkLoad
-from pendcore.derive.notation import DOTTED
+from pendcore.derive.notation import MASS
 from pendcore.derive.step import Equation, Formula, Step
-from pendcore.derive.writing import ACCELERATION, ANGLE, MASS, RATE
 
 _UPWARD = "as if $y$ pointed upward. It points downward, and the weight is positive."
 ERRATA = {
@@ -30,10 +29,14 @@ ERRATA = {
 """What the textbook prints otherwise; docs/reference/errata.md shows each by computation."""
 
 
+Sides: TypeAlias = tuple[Any, ...]
+"""An equation that is to be written: both sides, its number, and its place among the errata."""
+
+
 class Page:
     """Steps as they are written, with the number of the next and the names of what is in them."""
 
-    def __init__(self, derivation: Algebra) -> None:
+    def __init__(self, derivation: Derivation) -> None:
         self.derivation = derivation
         self.n = derivation.n
         self.s = derivation.symbols
@@ -45,20 +48,15 @@ class Page:
         self.is_textbook = self.n == 2 and self.is_uniform and not scene.effects
         self.steps: list[Step] = []
 
-    def step(self, title: str, text: str, *equations: Equation) -> None:
+    def step(self, title: str, text: str, *equations: Sides) -> None:
         """Write a step."""
-        self.steps.append(Step(len(self.steps) + 1, title, text, equations))
+        written = tuple(self._equation(*one) for one in equations)
+        self.steps.append(Step(len(self.steps) + 1, title, text, written))
 
-    def equation(
-        self, lhs: Expr | Formula, rhs: Expr | Formula, number: str | None = None, erratum: str = ""
-    ) -> Equation:
+    def _equation(self, lhs: Any, rhs: Any, number: str = "", erratum: str = "") -> Equation:
         """Return an equation; it keeps its number for two links, its remark for the textbook's."""
-        remark = ERRATA.get(erratum or number or "", "") if self.is_textbook else ""
-        return Equation(lhs, rhs, number if self.n == 2 else None, remark, self.s)
-
-    def symbol(self, name: str, latex: str, rank: int | None = None, link: int = 0) -> Symbol:
-        """Return a symbol that only names a side of an equation."""
-        return self.s.symbol(name, latex, rank, link)
+        remark = ERRATA.get(erratum or number, "") if self.is_textbook else ""
+        return Equation(lhs, rhs, (self.n == 2 and number) or None, remark, self.s)
 
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
@@ -71,15 +69,13 @@ class Page:
 
     def coordinate(self, axis: str, point: Formula, dots: int = 0) -> Symbol:
         """Return x_C1, or with dots its velocity and acceleration."""
-        (mark, shown), rank = [*DOTTED.items()][dots], (ANGLE, RATE, ACCELERATION)[dots]
-        name = f"{axis}{mark}_{point.text}"
-        return self.symbol(name, f"{shown.format(axis)}_{{{point}}}", rank)
+        return self.s.moving(axis, f"_{point.text}", point)[dots]
 
     def moment_of_inertia(self, link: int) -> Symbol:
         """Return I_C1; for link 0 I_A, that of link 1 about the pivot."""
         if link == 0:
-            return self.symbol("I_A", "I_{A}", MASS)
-        return self.symbol(f"I_C{link}", f"I_{{C_{{{link}}}}}", MASS, link)
+            return self.s.symbol("I_A", "I_{A}", MASS)
+        return self.s.symbol(f"I_C{link}", f"I_{{C_{{{link}}}}}", MASS, link)
 
     @staticmethod
     def vector(letter: str, index: object) -> Formula:
@@ -103,10 +99,6 @@ class Page:
         if getattr(factor, "is_Add", False):
             latex = rf"\left({latex}\right)"
         return Formula(f"{latex} {vector}")
-
-    def moment(self, arm: str, force: Formula) -> Formula:
-        """Return a moment: arm x force; the arm is named by the points between which it is."""
-        return Formula(rf"{self.vector('r', arm)} \times {force}")
 
     def determinant(self, arm: tuple[Expr, Expr], force: tuple[Expr, Expr]) -> Formula:
         """Return the cross product of two vectors in the plane, as the textbook prints it."""

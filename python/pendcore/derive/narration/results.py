@@ -7,9 +7,8 @@ from typing import Any
 
 from sympy import Dummy, Expr, Integer, Pow, expand
 
-from pendcore.derive.narration.page import Page, listed
-from pendcore.derive.step import Equation
-from pendcore.derive.writing import ANGLE, RATE
+from pendcore.derive.narration.page import Page, Sides, listed
+from pendcore.derive.notation import ANGLE, RATE
 
 BY_ELIMINATION = 4
 """The number of unknown accelerations from which determinants are longer than a page."""
@@ -39,17 +38,17 @@ def equations_of_motion(page: Page) -> None:
     page.step(
         "Equations of motion, collected" if page.n == 2 else "Equations of motion",
         text,
-        *(page.equation(*named) for named in (page.derivation.named.entries | locked).items()),
+        *(page.derivation.named.entries | locked).items(),
     )
 
 
-def _reactions(page: Page) -> Iterator[Equation]:
+def _reactions(page: Page) -> Iterator[Sides]:
     """Yield F_p, F_21 and so on, with accelerations put in where the textbook does."""
     equations, payload = page.equations, page.equations.payload
     if payload is not None:
         for axis, symbol, line in zip("xy", payload.force, payload.newton, strict=True):
             inertia = payload.mass * page.coordinate(axis, page.joint(page.n), 2)
-            yield page.equation(symbol, line.acting + symbol - inertia)
+            yield symbol, line.acting + symbol - inertia
     for i in range(page.n, 0, -1):
         for k, axis in enumerate("xy"):
             symbol, line = equations.forces[i - 1][k], equations.links[i - 1].newton[k]
@@ -57,8 +56,7 @@ def _reactions(page: Page) -> Iterator[Equation]:
             if i == page.n == 2:
                 acceleration = page.chain.center_accelerations[i - 1][k]
             force = page.s.masses[i - 1] * acceleration - line.acting.subs(symbol, 0)
-            number = "2.9" if i == 2 and axis == "y" else None
-            yield page.equation(symbol, force if i == 1 else -force, number)
+            yield symbol, force if i == 1 else -force, "2.9" if i == 2 and axis == "y" else ""
 
 
 def _put_in(page: Page) -> None:
@@ -79,17 +77,17 @@ def _put_in(page: Page) -> None:
         for i in (2, 1):
             acceleration = chain.center_accelerations[i - 1][axis]
             near = inertia(page.s.masses[i - 1], acceleration, axis)
-            near -= equations.far_force(i)[axis].xreplace(known)
+            near -= equations.far_forces[i - 1][axis].xreplace(known)
             near -= sum(load.force[axis] for load in equations.loads if load.link == i)
             known[equations.forces[i - 1][axis]] = expand(near if i == 1 else -near)
     page.step(
         "Equations of motion",
         "The joint reactions are put into the moment equations of both links.",
         *(
-            page.equation(
+            (
                 link.moment.inertia,
                 expand(link.moment.acting.xreplace(known)).xreplace(brackets),
-                number if number == "2.11" or link.about_pivot else None,
+                number if number == "2.11" or link.about_pivot else "",
             )
             for link, number in zip(equations.links, ("2.10", "2.11"), strict=True)
         ),
@@ -100,7 +98,7 @@ def solution(page: Page) -> None:
     """Write the accelerations, and the couples of locks."""
     motion, locked = page.derivation, page.equations.locked
     text = "The equations of motion are linear in the accelerations."
-    accelerations, found = motion.by_entries, list[Equation]()
+    accelerations, found = motion.by_entries, list[Sides]()
     if locked:
         text += (
             " The equations of links that turn as one are added, which takes the couple of their "
@@ -115,12 +113,12 @@ def solution(page: Page) -> None:
             f"$L h = {right}$ gives $h$, and $L^{{T}} a = D^{{-1}} h$ gives the accelerations $a$, "
             "the last one first. Here $D_{1}$ and $h_{1}$ are the first entries of both sides."
         )
-        found = [page.equation(*assignment) for assignment in motion.by_elimination]
+        found = [*motion.by_elimination]
         accelerations = motion.shared_accelerations
     elif motion.turning_together.cols > 1:
         text += " Cramer's rule solves them, with the determinant $\\Delta$."
-        delta = page.symbol("Delta", r"\Delta")
-        found = [page.equation(delta, motion.determinant)]
+        delta = page.s.symbol("Delta", r"\Delta")
+        found = [(delta, motion.determinant)]
         inverse = {Pow(motion.determinant, -1): 1 / delta}
         accelerations = tuple(a.xreplace(inverse) for a in accelerations)
     if locked:
@@ -136,11 +134,8 @@ def solution(page: Page) -> None:
         f"Solution for the angular acceleration{'s' if page.n > 1 else ''}",
         text,
         *found,
-        *(page.equation(a, value) for a, value in zip(page.s.qdd, accelerations, strict=True)),
-        *(
-            page.equation(page.equations.holding[joint], couple)
-            for joint, couple in motion.holding.items()
-        ),
+        *zip(page.s.qdd, accelerations, strict=True),
+        *((page.equations.holding[joint], couple) for joint, couple in motion.holding.items()),
     )
 
 
@@ -149,12 +144,12 @@ def first_order(page: Page) -> None:
     names, rates = [], []
     for i, (q, qd, qdd) in enumerate(zip(page.s.q, page.s.qd, page.s.qdd, strict=True)):
         k = 2 * i + 1
-        x = page.symbol(f"x({k})", f"x_{{{k}}}", ANGLE)
-        xd = page.symbol(f"x({k + 1})", f"x_{{{k + 1}}}", RATE)
-        names += [page.equation(x, q), page.equation(xd, qd)]
+        x = page.s.symbol(f"x({k})", f"x_{{{k}}}", ANGLE)
+        xd = page.s.symbol(f"x({k + 1})", f"x_{{{k + 1}}}", RATE)
+        names += [(x, q), (xd, qd)]
         for name, value in ((x, xd), (xd, qdd)):
-            rate = page.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
-            rates.append(page.equation(rate, value))
+            rate = page.s.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
+            rates.append((rate, value))
     page.step(
         "First-order form",
         "Equations of second order become a system of first order, with two states for each link.",
@@ -165,24 +160,27 @@ def first_order(page: Page) -> None:
 
 def energy(page: Page) -> None:
     """Write energies, powers and their balance: the check that the equations of motion allow."""
-    of = page.derivation.energy
-    found = [
-        page.equation(page.symbol("T", "T"), of.kinetic),
-        page.equation(page.symbol("V", "V"), of.potential),
-    ]
-    names, told = [], []
-    for i, (effect, power) in enumerate(of.powers_with(page.equations.forces[0]).items(), start=1):
-        told.append(f"$P_{{{i}}}$ is that of the {_named(effect)}")
-        names.append(page.symbol(f"P{i}", f"P_{{{i}}}"))
-        found.append(page.equation(names[-1], power))
+    energies = zip("TV", page.derivation.energies_by_definitions, strict=True)
+    powers = page.derivation.powers_with(page.equations.forces[0])
+    names = [page.s.symbol(f"P{i}", f"P_{{{i}}}") for i in range(1, len(powers) + 1)]
+    told = (
+        f"${page.s.latex(name)}$ is that of the {_named(effect)}"
+        for name, effect in zip(names, powers, strict=True)
+    )
     text = "The motion conserves the energy; no step above has used this."
     if names:
         text = (
             "Only the effects change the energy, at the rate of the sum of their powers: "
             f"{', '.join(told)}."
         )
-    rate = page.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
-    page.step("Energy", text, *found, page.equation(rate, sum(names)))
+    rate = page.s.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
+    page.step(
+        "Energy",
+        text,
+        *((page.s.symbol(name, name), value) for name, value in energies),
+        *zip(names, powers.values(), strict=True),
+        (rate, sum(names)),
+    )
 
 
 def _named(effect: Any) -> str:

@@ -7,13 +7,12 @@ with blanks.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from pendcore import Case
-from pendcore.derive.algebra import Algebra
+from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Document, Reader
 from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.contents import report, worksheet
@@ -21,31 +20,23 @@ from pendcore.derive.report.drawing import save
 from pendcore.messages import Progress, callback, close, warn, whole_file
 
 
-class Report(NamedTuple):
-    """The files that were written, a complaint about the run, and the files that could not be."""
+class Report(list[Path]):
+    """The files that were written, the report first.
 
-    files: list[Path]
-    complaint: str
-    left_out: list[Path]
+    ``is_whole`` says that the run is as it was asked for, and that no file is left out.
+    """
+
+    is_whole = True
 
 
 def write_report(
-    derivation: Algebra,
-    case: Case,
-    folder: Path,
-    *,
-    with_worksheet: bool = False,
-    progress: Progress = None,
+    derivation: Derivation, case: Case, folder: Path, *, with_worksheet: bool, progress: Progress
 ) -> Report:
-    """Write the report of a case, and its worksheet, in every form that this machine can make.
-
-    The parameters are those of `Derivation.report`, but the folder has to exist. The report is the
-    first file: Markdown always, HTML where there is pandoc, PDF where there is a LaTeX engine too.
-    """
+    """Write a report in every form that this machine can make; `Derivation.report` says more."""
     told = callback(progress, "deriving") or (lambda fraction: None)
     try:
         told(0.0)
-        solution, refusal = motion.solved_or_refused(case)
+        solution, refusal = motion.solved(case)
         complaint = refusal
         if not solution.success:
             complaint = f"the run is not complete: {solution.message}"
@@ -56,48 +47,39 @@ def write_report(
         if with_worksheet:
             documents["worksheet"] = worksheet(derivation, case, solution)
         told(0.4)
-        files, left_out = _written(documents, folder, lambda share: told(0.4 + 0.6 * share))
-        return Report(files, complaint, left_out)
+        made = _written(documents, folder, lambda share: told(0.4 + 0.6 * share))
+        made.is_whole = made.is_whole and not complaint
+        return made
     finally:
         close(told)
 
 
 def _written(
     documents: dict[str, Document], folder: Path, told: Callable[[float], object]
-) -> tuple[list[Path], list[Path]]:
-    """Write every file that can be written; return these, and the others."""
-    figures = {one.name: one for document in documents.values() for one in document.drawings}
-    writers: list[tuple[Path, Callable[[Path], object]]] = [
-        *(one for name, document in documents.items() for one in _texts(document, folder, name)),
-        *((folder / one.file(Reader.PEOPLE), partial(save, one)) for one in figures.values()),
-    ]
-    files: list[Path] = []
-    failures: dict[Path, Exception] = {}
-    for k, (path, write) in enumerate(writers, start=1):
+) -> Report:
+    """Write every file that can be written."""
+    engine = conversion.latex_engine()
+    writers: dict[str, Callable[[Path], object]] = {}
+    for name, document in documents.items():
+        writers[f"{name}.md"] = partial(conversion.markdown, document)
+        if conversion.has_pandoc():
+            writers[f"{name}.html"] = partial(conversion.page, document)
+            writers |= {f"{name}.pdf": partial(conversion.pdf, document, engine)} if engine else {}
+    drawings = (one for document in documents.values() for one in document.drawings)
+    writers |= {one.file(Reader.PEOPLE): partial(save, one) for one in drawings}
+    made = Report()
+    failures: dict[str, Exception] = {}
+    for k, (name, write) in enumerate(writers.items(), start=1):
         try:
-            with whole_file(path) as unfinished:
+            with whole_file(folder / name) as unfinished:
                 write(unfinished)
-            files.append(path)
+            made.append(folder / name)
         except Exception as failure:  # whatever it is, the others are written
-            failures[path] = failure
+            failures[name] = failure
         told(k / len(writers))
-    if not files:
-        raise failures[path]
-    for path, why in failures.items():
-        warn(f"{path.name} is not written: {why}")
-    return files, [*failures]
-
-
-def _texts(
-    document: Document, folder: Path, name: str
-) -> Iterator[tuple[Path, Callable[[Path], object]]]:
-    """Yield every form of a document that the machine can make, and what writes it."""
-    yield folder / f"{name}.md", partial(_write, document.markdown)
-    if conversion.has_pandoc():
-        yield folder / f"{name}.html", partial(_write, partial(conversion.page, document))
-        if (engine := conversion.latex_engine()) is not None:
-            yield folder / f"{name}.pdf", partial(conversion.pdf, document, engine)
-
-
-def _write(text: Callable[[], str], path: Path) -> None:
-    path.write_text(text(), encoding="utf-8")
+    if not made:
+        raise failures[name]
+    for name, why in failures.items():
+        warn(f"{name} is not written: {why}")
+    made.is_whole = not failures
+    return made

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import count
 from math import degrees
 from pathlib import Path
 from string import Template
@@ -17,14 +18,14 @@ from sympy import Expr
 import pendcore
 from pendcore import Case, Solution
 from pendcore.derive import document as doc
-from pendcore.derive import line_breaks, narration
-from pendcore.derive.algebra import Algebra
+from pendcore.derive import line_breaks
+from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Block, Document, Heading, Paragraph
 from pendcore.derive.laws.rod_drag import AT_REST
 from pendcore.derive.narration.kinematics import statements
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import motion, numbers
-from pendcore.derive.report.figures import Figures
+from pendcore.derive.report.bodies import free_bodies, mechanism
 from pendcore.derive.report.quantities import number, quantity, unit
 from pendcore.derive.step import Equation, Step, groups
 
@@ -32,10 +33,6 @@ BY_HAND = 22.0
 """Width in print, in em, of what fits on a line by hand."""
 ROOM = r"\qquad" * 7
 """Room in which an acceleration is written by hand."""
-NAMES = {1: "pendulum", 2: "double pendulum"}
-
-Parts = Mapping[str, Any]
-"""What stands in a template: text, or a list of blocks."""
 
 
 class AtSign(Template):
@@ -44,8 +41,8 @@ class AtSign(Template):
     delimiter = "@"
 
 
-def filled(name: str, parts: Parts) -> list[Block]:
-    """Return the blocks of a template; paragraphs that are left empty are left out."""
+def filled(name: str, parts: Mapping[str, Any]) -> list[Block]:
+    """Return the blocks of a template, of texts and lists of blocks; empty ones are left out."""
     found: list[Block] = []
     template = Path(__file__).with_name("templates") / f"{name}.md"
     for paragraph in template.read_text("utf-8").strip().split("\n\n"):
@@ -62,24 +59,22 @@ def filled(name: str, parts: Parts) -> list[Block]:
     return found
 
 
-def report(derivation: Algebra, case: Case, solution: Solution, refusal: str = "") -> Document:
-    """Return the derivation of a case with its solution, as `motion.solved_or_refused` has it."""
-    figures = Figures(derivation, case.q0)
+def report(derivation: Derivation, case: Case, solution: Solution, refusal: str = "") -> Document:
+    """Return the derivation of a case with its solution, as `motion.solved` has it."""
     parts = {
-        "problem": _problem(derivation, case, figures),
-        "steps": _steps(derivation, figures),
+        "problem": _problem(derivation, case),
+        "steps": _steps(derivation, case),
         **numbers.put_in(derivation),
         **numbers.at_the_start(derivation, case),
-        **motion.numerical_solution(derivation, solution, figures, refusal),
-        **motion.energy_check(derivation, solution, figures),
+        **motion.numerical_solution(derivation, solution, refusal),
+        **motion.energy_check(derivation, solution),
         "version": pendcore.__version__,
     }
-    return Document(_title(derivation, case), tuple(filled("report", parts)))
+    return _document(case.name or derivation.in_words, "report", parts)
 
 
-def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
+def worksheet(derivation: Derivation, case: Case, solution: Solution) -> Document:
     """Return the same problem with blanks: right sides, free bodies and curves are to be found."""
-    figures = Figures(derivation, case.q0)
     balance = "how well does your solution keep it?"
     if motion.does_work(case):
         balance = (
@@ -87,24 +82,27 @@ def worksheet(derivation: Algebra, case: Case, solution: Solution) -> Document:
             "keep the balance?"
         )
     parts = {
-        "problem": _problem(derivation, case, figures, by_hand=True),
-        "steps": _steps(derivation, figures, blanks=True),
-        "axes": [figures.empty_axes(solution)],
+        "problem": _problem(derivation, case, by_hand=True),
+        "steps": _steps(derivation, case, blanks=True),
+        "axes": [motion.empty_axes(solution)],
         "balance": balance,
-        "five_lines": [doc.Space(5)], "six_lines": [doc.Space(6)], "seven_lines": [doc.Space(7)],
-    }  # fmt: skip
-    title = f"{_title(derivation, case)}: worksheet"
-    return Document(title, tuple(filled("worksheet", parts)))
+    }
+    for name, lines in (("five_lines", 5), ("six_lines", 6), ("seven_lines", 7)):
+        parts[name] = [doc.Blank("", lines=lines)]
+    return _document(f"{case.name or derivation.in_words}: worksheet", "worksheet", parts)
 
 
-def _title(derivation: Algebra, case: Case) -> str:
-    name = case.name or NAMES.get(derivation.n, f"chain of {derivation.n} links")
-    return name[:1].upper() + name[1:]
+def _document(title: str, name: str, parts: Mapping[str, Any]) -> Document:
+    """Return a filled template with its figures numbered."""
+    numbers, blocks = count(1), list[Block]()
+    for block in filled(name, parts):
+        if isinstance(block, doc.Drawing):
+            block = replace(block, caption=f"Fig. {next(numbers)}. {block.caption}")
+        blocks.append(block)
+    return Document(title[:1].upper() + title[1:], tuple(blocks))
 
 
-def _problem(
-    derivation: Algebra, case: Case, figures: Figures, *, by_hand: bool = False
-) -> list[Block]:
+def _problem(derivation: Derivation, case: Case, *, by_hand: bool = False) -> list[Block]:
     """Return what is given, and Fig. 1; by hand without what only avoids 0/0."""
     page, s, write = Page(derivation), derivation.symbols, derivation.symbols.latex
     gravity = "gravity and " if derivation.scene.gravity else ""
@@ -122,32 +120,32 @@ def _problem(
         for q, qd, angle, rate in zip(s.q, s.qd, case.q0, case.qd0, strict=True)
     )
     return filled("problem", {
-        "chain": NAMES.get(derivation.n, f"chain of {derivation.n} links"),
+        "chain": derivation.in_words,
         "rods": " The links are uniform rods." if page.is_uniform else "",
         "acts": [Paragraph(x) for x in (statements(page) if page.equations.laws else [nothing])],
-        "mechanism": [figures.mechanism()],
+        "mechanism": [mechanism(page, case.q0)],
         "parameters": [doc.Table(("symbol", "meaning", "value", "unit"), rows, "llrl")],
         "initial": [doc.Displayed(f"\\begin{{aligned}}\n{initial}\n\\end{{aligned}}")],
         "begin": begin, "end": end,
     })  # fmt: skip
 
 
-def _steps(derivation: Algebra, figures: Figures, *, blanks: bool = False) -> list[Block]:
+def _steps(derivation: Derivation, case: Case, *, blanks: bool = False) -> list[Block]:
     """Return the derivation; the free bodies come before the first of their equations."""
     names, found, drawn = _names(derivation), list[Block](), False
-    for step in narration.steps(derivation):
+    for step in derivation.steps:
         if step.title == "Effects":
             step = replace(step, text="What acts besides gravity is stated above.")
         heading, text, *displayed = step.blocks(lambda e: _value(e, derivation))
         found += [heading, text]
         if not drawn and step.title.startswith("Newton-Euler"):
             drawn = True
-            found.append(figures.free_bodies(forces=not blanks))
+            found.append(free_bodies(Page(derivation), case.q0, forces=not blanks))
         found += _blanks(step, names) if blanks else displayed
     return found
 
 
-def _value(equation: Equation, derivation: Algebra) -> str:
+def _value(equation: Equation, derivation: Derivation) -> str:
     """Return the number of a moment of inertia that is given by the parameters alone."""
     right, values = equation.rhs, derivation.values
     if not isinstance(right, Expr) or not str(equation.lhs).startswith(("I_", "M")):
@@ -174,7 +172,7 @@ def _blanks(step: Step, names: dict[Any, Any]) -> Iterator[Block]:
             yield doc.Blank(latex, tag if equation is equations[-1] else None, lines)
 
 
-def _names(derivation: Algebra) -> dict[Any, Any]:
+def _names(derivation: Derivation) -> dict[Any, Any]:
     """Return what stands on a worksheet for each left side that would give something away.
 
     In the solution, left sides are ``m2 L2^2/12 qdd2``, say, and m2 times the acceleration of C_2

@@ -54,10 +54,6 @@ PREAMBLE = r"""
 """
 
 
-class ConversionError(RuntimeError):
-    """A converter is installed, and failed."""
-
-
 def has_pandoc() -> bool:
     """Whether pages can be made."""
     return shutil.which("pandoc") is not None
@@ -68,8 +64,13 @@ def latex_engine() -> str | None:
     return next((engine for engine in ENGINES if shutil.which(engine)), None)
 
 
-def page(document: Document) -> str:
-    """Return a document as one page of HTML; raise a ConversionError if pandoc fails."""
+def markdown(document: Document, path: Path) -> None:
+    """Write a document as Markdown."""
+    path.write_text(document.markdown(), encoding="utf-8")
+
+
+def page(document: Document, path: Path) -> None:
+    """Write a document as one page of HTML; raise a RuntimeError if pandoc fails."""
     style = f"<style>\n{STYLE.read_text('utf-8')}</style>\n"
     with TemporaryDirectory() as place:
         made = _pandoc(document, Reader.HTML, Path(place), style, "--to=html5", "--mathml")
@@ -79,7 +80,8 @@ def page(document: Document) -> str:
             picture = base64.b64encode((made.parent / found[1]).read_bytes()).decode()
             return f'src="data:image/svg+xml;base64,{picture}"'
 
-        return re.sub(r'src="([\w-]+\.svg)"', embedded, _for_browsers(text))
+        whole = re.sub(r'src="([\w-]+\.svg)"', embedded, _for_browsers(text))
+        path.write_text(whole, encoding="utf-8")
 
 
 def _for_browsers(text: str) -> str:
@@ -98,7 +100,7 @@ def _for_browsers(text: str) -> str:
 
 
 def pdf(document: Document, engine: str, path: Path) -> None:
-    """Write a document as a PDF; raise a ConversionError if pandoc or the engine fails."""
+    """Write a document as a PDF; raise a RuntimeError if pandoc or the engine fails."""
     with TemporaryDirectory() as place:
         options = "--to=latex", f"--pdf-engine={engine}"
         shutil.copyfile(_pandoc(document, Reader.PDF, Path(place), PREAMBLE, *options), path)
@@ -121,5 +123,5 @@ def _pandoc(document: Document, reader: Reader, folder: Path, header: str, *opti
     surroundings = {**os.environ, "LC_ALL": "C.UTF-8"}
     done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=surroundings)
     if done.returncode:
-        raise ConversionError(f"pandoc: {done.stderr.strip() or 'failed without a word'}")
+        raise RuntimeError(f"pandoc: {done.stderr.strip() or 'failed without a word'}")
     return made

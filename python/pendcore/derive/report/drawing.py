@@ -6,22 +6,21 @@ are scaled, m. Names are placed last, where they are clear of all that is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import matplotlib as mpl
 import numpy as np
-import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Wedge
+from matplotlib.transforms import Affine2D
 
 from pendcore.derive.document import Drawing
 from pendcore.derive.report.labels import Label, place
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Floats = npt.NDArray[np.float64]
+from pendcore.derive.report.quantities import Floats
 
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
@@ -39,25 +38,25 @@ _FONT: Any = {
 }
 
 
-def lettering() -> AbstractContextManager[None]:
+@contextmanager
+def lettering() -> Iterator[None]:
     """Draw figures with the letters of the equations, and save them the same every time."""
-    import matplotlib as mpl
+    with mpl.rc_context(_FONT):
+        yield
 
-    return mpl.rc_context(_FONT)
 
-
+@lettering()
 def save(drawing: Drawing, path: Path) -> None:
     """Write a picture into a file, of the kind that its suffix says, the same every time."""
     dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
-    with lettering():
-        drawing.figure.draw_without_rendering()
-        drawing.figure.set_layout_engine("none")  # every picture has the first one's layout
-        drawing.figure.savefig(path, dpi=150, metadata=dates)
+    drawing.figure.draw_without_rendering()
+    drawing.figure.set_layout_engine("none")  # every picture has the first one's layout
+    drawing.figure.savefig(path, dpi=150, metadata=dates)
 
 
 @dataclass(slots=True)
 class Sketch:
-    """A sheet to draw on; ``size`` is the length by which symbols are scaled, m.
+    """A sheet to draw on, with equal scales and y down; ``size`` scales the symbols, m.
 
     ``drawn`` are points of all lines, and half the width of each line, m: no name can be there.
     """
@@ -67,24 +66,19 @@ class Sketch:
     drawn: list[tuple[Floats, float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        self.axes.set_aspect("equal")
+        self.axes.set_axis_off()
+        self.axes.invert_yaxis()
+
     def line(self, start: Floats, end: Floats, half: float = 0.0) -> None:
         """Remember that a straight line is drawn; ``half`` is half its width, m."""
         self.drawn.append((np.linspace(start, end, 60), half))
 
     def disc(self, at: Floats, radius: float, **how: Any) -> None:
         """Draw a disc; the radius is a share of the size."""
-        from matplotlib.patches import Circle
-
         self.axes.add_patch(Circle(tuple(at), radius * self.size, **{"ec": BLACK} | how))
         self.drawn.append((np.atleast_2d(at), radius * self.size))
-
-
-def sketch(axes: Axes, size: float) -> Sketch:
-    """Make axes a sheet to draw on: equal scales, y down, no frame."""
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    axes.invert_yaxis()
-    return Sketch(axes, size)
 
 
 def finish(on: Sketch, *, above: float = 0.0, shrink: bool = False) -> None:
@@ -133,9 +127,6 @@ def name(
 
 def rod(on: Sketch, start: Floats, end: Floats) -> None:
     """Draw a link: a bar with round ends."""
-    from matplotlib.patches import FancyBboxPatch
-    from matplotlib.transforms import Affine2D
-
     half, (x, y) = 0.026 * on.size, end - start
     bar = FancyBboxPatch(
         (-half, -half), np.hypot(x, y) + 2 * half, 2 * half,
@@ -155,8 +146,6 @@ def pin(on: Sketch, at: Floats) -> None:
 
 def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
     """Draw what holds the first joint: a bracket on a hatched line, above or below the joint."""
-    from matplotlib.patches import Polygon
-
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
     corners = at + np.array([[0.0, 0.0], [-a, -b], [a, -b]])
     base, hatch = at + np.array([[-2 * a, -b], [2 * a, -b]]), np.array([0.55 * a, -0.39 * b])
@@ -173,8 +162,6 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
 
 def mass_center(on: Sketch, at: Floats) -> None:
     """Draw a mass centre: a disc in quarters."""
-    from matplotlib.patches import Wedge
-
     on.disc(at, 0.022, facecolor="white", lw=0.9, zorder=5)
     for first in (0, 180):
         quarter = Wedge(tuple(at), 0.022 * on.size, first, first + 90, color=BLACK, zorder=5)
@@ -214,6 +201,15 @@ def turning_arrow(
     _head(on, points[-5], points[-1], color, 4, 11, 1.1)
     on.drawn.append((points, 0.006 * on.size))
     name(on, points[[30, 20, 40, 10]], text, direction(float(np.mean(span))), color=color)
+
+
+def couple(
+    on: Sketch, at: Floats, towards: Floats, text: str, radius: float = 0.13, sense: float = 1.0
+) -> None:
+    """Draw a couple beside a place, in the sense from x to y (1) or against it (-1)."""
+    middle = float(np.arctan2(towards[1], towards[0]))
+    span = middle - 0.7 * sense, middle + 0.7 * sense
+    turning_arrow(on, at, text, radius=radius, span=span, color=COUPLE)
 
 
 def _head(

@@ -6,16 +6,12 @@ All lengths here are points of print, except in what is drawn: that is in the ax
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
+from matplotlib.axes import Axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Floats = npt.NDArray[np.float64]
+from pendcore.derive.report.quantities import Floats
 
 GAPS = np.array([4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0])
 """Gaps between a name and what it names; the first is half a letter."""
@@ -27,8 +23,7 @@ BLOCKED = 1000.0
 """The cost of lying on something else, which is larger than all other costs."""
 
 
-@dataclass(slots=True)
-class Label:
+class Label(NamedTuple):
     """A name, with LaTeX between dollars, and the points that it may stand beside, m.
 
     The best point is the first; ``towards`` is the side that is tried first, y down.
@@ -37,7 +32,7 @@ class Label:
     text: str
     places: Floats
     towards: Floats
-    style: dict[str, Any] = field(default_factory=dict)
+    style: dict[str, Any]
 
 
 def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, float]]) -> None:
@@ -59,8 +54,12 @@ def place(axes: Axes, labels: Sequence[Label], drawn: Sequence[tuple[Floats, flo
         half = np.array([box.width, box.height]) * to_points / 2 + 4.0 * ("bbox" in style)
         anchors = axes.transData.transform(label.places) * to_points
         found, worth = _candidates(anchors, label.towards * np.array([1.0, -1.0]), half)
-        outside = np.maximum(np.abs(found[:, None] - spots) - half, 0.0)
-        room = np.minimum(CLEAR, (np.hypot(*np.moveaxis(outside, -1, 0)) - radii).min(axis=1))
+        reach = half + CLEAR + radii[:, None]  # what lies farther away takes no room
+        near = (spots > found.min(axis=0) - reach) & (spots < found.max(axis=0) + reach)
+        here = near.all(axis=1)
+        outside = np.maximum(np.abs(found[:, None] - spots[here]) - half, 0.0)
+        room = np.hypot(*np.moveaxis(outside, -1, 0)) - radii[here]
+        room = room.min(axis=1, initial=CLEAR)
         for center, extent in taken:
             apart = np.maximum(np.abs(found - center) - half - extent, 0.0)
             room = np.minimum(room, np.hypot(*apart.T))

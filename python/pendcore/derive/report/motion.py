@@ -5,12 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import AutoMinorLocator
 
 from pendcore import AccuracyError, Case, Solution
-from pendcore.derive.algebra import Algebra
-from pendcore.derive.document import Paragraph, Table
-from pendcore.derive.report.figures import Figures
-from pendcore.derive.report.quantities import Scales, number, quantity
+from pendcore.derive.derivation import Derivation
+from pendcore.derive.document import Drawing, Paragraph, Table
+from pendcore.derive.report.drawing import lettering
+from pendcore.derive.report.quantities import Floats, Scales, number, quantity
 
 POINTS = 1201
 """The number of times at which curves are drawn."""
@@ -22,6 +25,9 @@ VISIBLE = 1e-9
 """The least time that a run takes if its curves are drawn, as a share of the times themselves."""
 LOSSES = ("viscous", "drag")
 """The entries of the ledger that smooth effects lose; the others are work done on the chain."""
+MOST_TICKS = 7
+"""The largest number of ticks on an axis that is drawn into by hand."""
+OF_LINKS = "The angles of the links over time."
 
 METHODS = {
     "dopri5": "Dormand and Prince's method of order 5, that of MATLAB's `ode45`",
@@ -38,13 +44,8 @@ def does_work(case: Case) -> bool:
     return any(effect.description.account != "none" for effect in case.scene.effects)
 
 
-def solved(case: Case) -> Solution:
-    """Run a case so that it can be drawn, with a ledger if its effects do work."""
-    return solved_or_refused(case)[0]
-
-
-def solved_or_refused(case: Case) -> tuple[Solution, str]:
-    """Run a case as `solved` does; return also why its error was refused, if it was."""
+def solved(case: Case) -> tuple[Solution, str]:
+    """Run a case so that it can be drawn; return also why its error was refused, if it was."""
     start, end = case.t_span
     if start == end:
         raise ValueError(f"t_span = {case.t_span}: a report draws curves: let the run take time")
@@ -54,13 +55,11 @@ def solved_or_refused(case: Case) -> tuple[Solution, str]:
 
 
 def _at_times_until(end: float, case: Case) -> tuple[Solution, str]:
-    """Run a case and keep its states and its ledger at times spread until then."""
+    """Run a case and keep its states at times spread until then, with a ledger if work is done."""
     start = case.t_span[0]
-    times = np.unique(np.linspace(start, end, POINTS))
-    times = times if end >= start else times[::-1]
+    times = np.unique(np.linspace(start, end, POINTS))[:: 1 if end >= start else -1]
     options: dict[str, Any] = {**case.options, "store": "dense", "t_eval": tuple(times.tolist())}
-    if does_work(case):
-        options["ledger"] = True
+    options |= {"ledger": True} if does_work(case) else {}
     spread = Case(
         scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
         options=options,
@@ -80,7 +79,7 @@ def takes_time(solution: Solution) -> bool:
 
 
 def numerical_solution(
-    derivation: Algebra, solution: Solution, figures: Figures, refusal: str = ""
+    derivation: Derivation, solution: Solution, refusal: str = ""
 ) -> dict[str, Any]:
     """Return how the equations were integrated, and with what result."""
     complaints, moves = [], takes_time(solution)
@@ -95,9 +94,9 @@ def numerical_solution(
     return {
         "method": how(solution),
         "complaints": [Paragraph(words) for words in complaints],
-        "angles": [figures.angles(solution)] if moves else [],
+        "angles": [angles(solution)] if moves else [],
         "table": [_table(derivation, solution)] if moves else [],
-        "reactions": [figures.reactions(solution)] if moves else [],
+        "reactions": [reactions(derivation, solution)] if moves else [],
         "largest": _largest(derivation, solution) if moves else "",
     }
 
@@ -116,7 +115,7 @@ def how(solution: Solution) -> str:
     return f"{words}, {settings}: {counts}"
 
 
-def _table(derivation: Algebra, solution: Solution) -> Table:
+def _table(derivation: Derivation, solution: Solution) -> Table:
     s, write = derivation.symbols, derivation.symbols.latex
     with_rates = derivation.n <= MOST_WITH_RATES
     head = ["$t$ (s)", *(f"${write(x)}$ (deg)" for x in s.q)]
@@ -129,14 +128,7 @@ def _table(derivation: Algebra, solution: Solution) -> Table:
     return Table(tuple(head), tuple(rows), "r" * len(head))
 
 
-def _balance(solution: Solution) -> tuple[float, float, float]:
-    """Return the energy at the start, the largest error of its balance, the largest T, J."""
-    energy = solution.energy()
-    left = energy.total - energy.total[0] if energy.ledger is None else energy.ledger["residual"]
-    return float(energy.total[0]), float(np.abs(left).max()), float(energy.kinetic.max())
-
-
-def _largest(derivation: Algebra, solution: Solution) -> str:
+def _largest(derivation: Derivation, solution: Solution) -> str:
     digits = min(solution.trusted_digits(), 4)
     sentences = []
     for one in solution.largest_reactions():
@@ -148,7 +140,7 @@ def _largest(derivation: Algebra, solution: Solution) -> str:
     return f"The largest reactions are {', '.join(sentences)}."
 
 
-def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> dict[str, Any]:
+def energy_check(derivation: Derivation, solution: Solution) -> dict[str, Any]:
     """Return the energies in symbols, and how well the run kept them."""
     energy, moves = solution.energy(), takes_time(solution)
     rate = r"\frac{\mathrm{d}}{\mathrm{d}t}(T + V)" + (r" - \sum_k P_k" if energy.ledger else "")
@@ -159,12 +151,13 @@ def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> d
             "angles, rates and parameters. What is left in the run is its error."
         )
     if moves:
-        start, left, moving = _balance(solution)
-        moving = Scales(derivation).shown(moving, "J")
+        start, ledger = float(energy.total[0]), energy.ledger
+        left = energy.total - start if ledger is None else ledger["residual"]
+        moving = Scales(derivation).shown(float(energy.kinetic.max()), "J")
         kept = (
             f"In the run, $T + V$ is ${quantity(start, 'J')}$ at the start; "
-            f"{'the balance with all work' if energy.ledger else 'it'} stays within "
-            f"${quantity(left, 'J', 2)}$, and the largest kinetic energy is "
+            f"{'the balance with all work' if ledger else 'it'} stays within "
+            f"${quantity(float(np.abs(left).max()), 'J', 2)}$, and the largest kinetic energy is "
             f"${quantity(moving, 'J')}$."
         )
     if moves and energy.ledger is not None:
@@ -177,5 +170,99 @@ def energy_check(derivation: Algebra, solution: Solution, figures: Figures) -> d
         "exactly": exactly,
         "kept": kept,
         "work": [Table(("from start to end", "J"), tuple(rows), "lr")] if rows else [],
-        "energies": [figures.energies(solution)] if moves else [],
+        "energies": [energies(solution)] if moves else [],
     }
+
+
+@lettering()
+def angles(solution: Solution) -> Drawing:
+    """Draw the textbook's figure, the angles over time."""
+    figure, axes = _sheets(solution.q.shape[1])
+    solution.plot(axes)
+    for axis in axes[:-1]:
+        axis.set_xlabel("")
+    return Drawing("angles", OF_LINKS, figure)
+
+
+@lettering()
+def empty_axes(solution: Solution) -> Drawing:
+    """Draw the axes of the angles with nothing in them: the scale gives nothing away."""
+    span = solution.t[0], solution.t[-1]
+    if span[0] == span[1]:  # a run that failed at once
+        span = solution.t_span
+    figure, axes = _sheets(solution.q.shape[1])
+    for i, axis in enumerate(axes, start=1):
+        low, high, step = whole_ticks(np.degrees(solution.q[:, i - 1]))
+        axis.set(xlim=span, ylim=(low, high), ylabel=f"q{i} (deg)")
+        axis.set_yticks(np.arange(low, high + 1.0, step))
+        axis.set_yticks(np.arange(low, high + 1.0, step / 3.0), minor=True)
+        axis.xaxis.set_minor_locator(AutoMinorLocator(5))
+        axis.grid(True, which="major", color="0.6", linewidth=0.6)
+        axis.grid(True, which="minor", color="0.85", linewidth=0.5)
+    return Drawing("axes", OF_LINKS, figure)
+
+
+@lettering()
+def reactions(derivation: Derivation, solution: Solution) -> Drawing:
+    """Draw the joint forces as the derivation has them: F_01, F_21, ..."""
+    forces = solution.reactions().copy()
+    forces[:, 1:] *= -1  # F_12 is the core's, F_21 the derivation's
+    figure, axes = _sheets(derivation.n, 2.4)
+    for i, axis in enumerate(axes):
+        x, y = forces[:, i].T
+        names = [*map(derivation.symbols.latex, derivation.equations.forces[i])]
+        name = names[0].replace("x}", "}")
+        size = rf"|\mathbf{{F}}{name[1:]}|"
+        curves = {names[0]: x, names[1]: y, size: np.hypot(x, y)}
+        _curves(axis, solution.t, curves, f"${name}$ (N)")
+    words = "The joint reactions over time; $y$ points down, so a force upward is negative."
+    return Drawing("reactions", words, figure)
+
+
+@lettering()
+def energies(solution: Solution) -> Drawing:
+    """Draw the energies, and what their balance leaves over."""
+    energy = solution.energy()
+    curves = {"T": energy.kinetic, "V": energy.potential, "T + V": energy.total}
+    left, less = energy.total - energy.total[0], ""
+    if energy.ledger is not None:
+        left, less = energy.ledger["residual"], " less all work"
+    figure, axes = _sheets(2, 2.4)
+    _curves(axes[0], solution.t, curves, "energy (J)")
+    _curves(axes[1], solution.t, {"": left}, "balance (J)")
+    axes[1].ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
+    words = (
+        "Above: kinetic, potential and total energy over time. Below: the change of $T + V$ "
+        f"since the start{less}, which should be zero."
+    )
+    return Drawing("energies", words, figure)
+
+
+def _sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
+    """Return a figure with axes one below the other."""
+    figure = Figure(figsize=(6.6, max(3.0, height * rows)), layout="constrained")
+    axes = list(figure.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
+    axes[-1].set_xlabel("t (s)")
+    return figure, axes
+
+
+def _curves(axis: Axes, t: Floats, curves: dict[str, Floats], label: str) -> None:
+    """Draw curves over time, with their names beside them."""
+    styles = ("r-", "b--", "k-") if len(curves) > 1 else ("k-",)
+    for (name, curve), style in zip(curves.items(), styles, strict=True):
+        axis.plot(t, curve, style, label=f"${name}$", lw=0.8 if style[0] == "k" else 1.5)
+    axis.set_ylabel(label)
+    if len(curves) > 1:
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    axis.grid(True, color="0.85", linewidth=0.6)
+    axis.margins(x=0)
+
+
+def whole_ticks(angles: Floats) -> tuple[float, float, float]:
+    """Return ends and step of an axis for angles, deg: at most seven ticks, at whole 30 degrees."""
+    for step in (30.0, 45.0, 90.0, 180.0, *(360.0 * 2.0 ** np.arange(20))):
+        low = step * np.floor(min(0.0, float(angles.min())) / step)
+        high = step * np.ceil(max(90.0, float(angles.max()) + 0.05 * step) / step)
+        if (high - low) / step <= MOST_TICKS - 1:
+            break
+    return float(low), float(high), float(step)

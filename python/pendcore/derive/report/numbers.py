@@ -8,12 +8,11 @@ import numpy as np
 import sympy
 from sympy import Expr, Float, Symbol
 
-from pendcore import Case, Solution, simulate
-from pendcore.derive.algebra import Algebra
+from pendcore import Case, simulate
+from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Displayed, Table
 from pendcore.derive.line_breaks import aligned, rows
 from pendcore.derive.motion import needed
-from pendcore.derive.report.drawing import Floats
 from pendcore.derive.report.quantities import DIGITS, ROUNDING, Scales, number, quantity, unit
 
 OF_LOCKS = (
@@ -26,7 +25,7 @@ LOCKS_IN_THE_CORE = (
 )
 
 
-def put_in(derivation: Algebra) -> dict[str, Any]:
+def put_in(derivation: Derivation) -> dict[str, Any]:
     """Return M and f with the numbers of the scene, and the laws in which they are written."""
     write, locking = derivation.symbols.latex, derivation.locking
     defined = derivation.equations.definitions
@@ -54,7 +53,7 @@ def _unit(entry: Symbol) -> str:
     return "kg m^2" if entry.name.startswith("M") else "N m"
 
 
-def _numeric(derivation: Algebra, symbol: Symbol, value: Expr, name: str) -> list[str]:
+def _numeric(derivation: Derivation, symbol: Symbol, value: Expr, name: str) -> list[str]:
     """Return rows of a symbol's value in numbers, with the unit behind it."""
     write = derivation.symbols.latex
     put_in = sympy.sympify(value.xreplace(derivation.values))
@@ -78,7 +77,7 @@ def _short(value: Float) -> Expr:
 class Start:
     """The state at the start, and what the derivation and the compiled core make of it."""
 
-    def __init__(self, derivation: Algebra, case: Case) -> None:
+    def __init__(self, derivation: Derivation, case: Case) -> None:
         self.derivation = derivation
         self.case = case
         s = derivation.symbols
@@ -89,47 +88,37 @@ class Start:
 
     def value(self, expression: Expr) -> float:
         """Return the number of an expression at the start, computed with twenty digits."""
-        return float(expression.xreplace(self.known).evalf(20))
+        return float(sympy.sympify(expression.xreplace(self.known)).evalf(20))
 
     def rows(self) -> list[tuple[str, str, float, float]]:
         """Return name, unit, value by the derivation and by the core, for each row of the table."""
-        derivation, case = self.derivation, self.case
-        s, write, value = derivation.symbols, derivation.symbols.latex, self.value
-        time = case.t_span[0]
-        core = simulate(derivation.scene, (time, time), case.q0, case.qd0, on_failure="ignore")
-        found = [
-            (write(symbol), "rad/s^2", self.known[symbol], float(computed))
-            for symbol, computed in zip(s.qdd, core.accelerations()[0], strict=True)
-        ]
-        for i, (names, pair) in enumerate(
-            zip(derivation.equations.forces, derivation.reactions, strict=True)
-        ):
+        derivation, case, scene = self.derivation, self.case, self.derivation.scene
+        equations, write, time = derivation.equations, derivation.symbols.latex, case.t_span[0]
+        core = simulate(scene, (time, time), case.q0, case.qd0, on_failure="ignore")
+        own = [(symbol, "rad/s^2", symbol) for symbol in derivation.symbols.qdd]
+        of_core = [*core.accelerations()[0]]
+        forces = zip(equations.forces, derivation.reactions, core.reactions()[0], strict=True)
+        for i, (names, pair, force) in enumerate(forces):
             sign = 1 if i == 0 else -1  # F_12 is the core's, F_21 the derivation's
-            for name, own, computed in zip(names, pair, core.reactions()[0, i], strict=True):
-                found.append((write(name), "N", sign * value(own), sign * float(computed)))
-        for joint, couple in self._couples_of_core(core).items():
-            own = value(derivation.holding_couples[joint])
-            found.append((write(derivation.equations.holding[joint]), "N m", own, couple))
+            own += [(name, "N", sign * x) for name, x in zip(names, pair, strict=True)]
+            of_core += [*(sign * force)]
+        if equations.locked:  # the couples that make the free chain's accelerations these
+            free = scene.replace(effects=[x for x in scene.effects if x.kind != "lock"])
+            change = core.accelerations() - free.accelerations(core.t, core.q, core.qd)
+            couples = np.cumsum((scene.mass_matrix(core.q[0]) @ change[0])[::-1])[::-1]
+            for joint, couple in derivation.holding_couples.items():
+                own.append((equations.holding[joint], "N m", couple))
+                of_core.append(couples[joint - 1])
         energy = core.energy()
+        own += [("T", "J", derivation.kinetic_energy), ("V", "J", derivation.potential_energy)]
+        of_core += [energy.kinetic[0], energy.potential[0]]
         return [
-            *found,
-            ("T", "J", value(derivation.kinetic_energy), float(energy.kinetic[0])),
-            ("V", "J", value(derivation.potential_energy), float(energy.potential[0])),
+            (write(name), unit, self.value(x), float(number))
+            for (name, unit, x), number in zip(own, of_core, strict=True)
         ]
 
-    def _couples_of_core(self, core: Solution) -> dict[int, float]:
-        """Return the couples of locks, N m, which make the free chain's accelerations these."""
-        scene, joints = self.derivation.scene, self.derivation.equations.locked
-        if not joints:
-            return {}
-        free = scene.replace(effects=[x for x in scene.effects if x.kind != "lock"])
-        change = core.accelerations() - free.accelerations(core.t, core.q, core.qd)
-        left: Floats = scene.mass_matrix(core.q[0]) @ change[0]
-        couples = np.cumsum(left[::-1])[::-1]
-        return {joint: float(couples[joint - 1]) for joint in joints}
 
-
-def at_the_start(derivation: Algebra, case: Case) -> dict[str, Any]:
+def at_the_start(derivation: Derivation, case: Case) -> dict[str, Any]:
     """Return the accelerations, reactions and energies at the start, beside the core's."""
     start, write, s = Start(derivation, case), derivation.symbols.latex, derivation.symbols
     table = start.rows()

@@ -6,8 +6,12 @@ import re
 from collections.abc import Iterable
 from math import isfinite
 
-from pendcore.derive.algebra import Algebra
+import numpy as np
+import numpy.typing as npt
 
+from pendcore.derive.derivation import Derivation
+
+Floats = npt.NDArray[np.float64]
 DIGITS = 6
 ROUNDING = 1e-12
 """Below this share of the scale of its kind, a number is what rounding leaves of 0."""
@@ -42,7 +46,7 @@ class Scales:
     is larger.
     """
 
-    def __init__(self, derivation: Algebra, found: Iterable[tuple[str, float]] = ()) -> None:
+    def __init__(self, derivation: Derivation, found: Iterable[tuple[str, float]] = ()) -> None:
         scene, payload = derivation.scene, derivation.equations.payload
         lengths = [abs(link.length) for link in scene.links]
         mass = sum(link.mass for link in scene.links)
