@@ -59,7 +59,10 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
         else:
             found = run_members(members, request, workers, limit, report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
-    raise_with(found.error, ensemble=result)
+    try:
+        raise_with(found.error, ensemble=result)
+    finally:
+        del found  # the traceback of its error holds this frame: it would wait for the collector
     return _checked(result, given["on_failure"])
 
 
