@@ -85,7 +85,7 @@ def test_what_stops_a_file_is_named_and_leaves_the_others(row, why, monkeypatch,
 
 def test_a_report_is_written_without_the_figures_that_cannot_be_drawn(monkeypatch, pendcore):
     stop_at(monkeypatch, FIGURES, STOPS["RuntimeError: latex could not be found"])
-    monkeypatch.setattr("pendcore.derive.report.conversion.has_pandoc", lambda: False)
+    monkeypatch.setattr("shutil.which", lambda command: None)
     rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)])
     Path("rod.toml").write_text(pc.Case(scene=rod, q0=1.0, t_span=(0, 1)).to_toml())
     status, _, err = pendcore("derive rod.toml --to report -o o")
