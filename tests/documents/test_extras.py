@@ -44,4 +44,4 @@ def test_extras_stand_on_public_names_alone():
 
 
 def test_what_imports_a_private_name_is_seen():
-    assert "pendcore._figures is private" in imported("_figures")
+    assert "pendcore._horizon is private" in imported("_horizon")
