@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-EXTRAS = ["films", "page", "cost", "derive", "cli"]
+EXTRAS = ["plotting", "explanation", "page", "cost", "derive", "cli"]
 PROGRAM = """
 import importlib, pkgutil, sys
 import pendcore
@@ -47,4 +47,4 @@ def test_an_extra_stands_on_public_names_alone(extra: str) -> None:
 
 
 def test_what_imports_a_private_name_is_seen() -> None:
-    assert "pendcore._figures is private" in imported("_figures")
+    assert "pendcore._horizon is private" in imported("_horizon")

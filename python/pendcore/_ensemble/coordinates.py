@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendcore import _core
 from pendcore._ensemble.members import Members
 from pendcore._messages.arguments import Floats
 
@@ -27,7 +26,7 @@ def member_axes(shape: tuple[int, ...]) -> list[str]:
 
 def coordinates(members: Members) -> list[Coordinate]:
     """Return the coordinates of the members: q0, qd0, and what varies."""
-    units = {name: unit for name, unit, _ in _core.parameters(members.scene._compiled)}
+    units = members.scene.parameter_units()
     axes = member_axes(members.shape)
     found = [
         Coordinate("q0", *_needed([*axes, "link"], members.q0), "rad"),

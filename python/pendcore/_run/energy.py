@@ -36,6 +36,8 @@ class Ledger(Mapping[str, Floats]):
     >>> ledger = sol.energy().ledger
     >>> [*ledger], f"{ledger.viscous[-1]:.3f} J"
     (['viscous', 'residual'], '1.705 J')
+    >>> [*ledger.losses]  # the other entries count work done on the chain
+    ['viscous']
     >>> bool(abs(ledger.residual).max() < 1e-6)
     True
     """
@@ -51,6 +53,11 @@ class Ledger(Mapping[str, Floats]):
         residual = gain - booked
         residual.flags.writeable = False
         object.__setattr__(self, "_entries", {**entries, "residual": residual})
+
+    @property
+    def losses(self) -> frozenset[str]:
+        """The names of the entries that count what is lost."""
+        return LOSSES.intersection(self)
 
     def __getitem__(self, name: str) -> Floats:
         try:

@@ -16,16 +16,7 @@ _HINT = "needs {0}: pip install {0}"
 
 
 def to_pandas(solution: Solution) -> pd.DataFrame:
-    """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
-
-    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, unless an
-    effect or an event is a function.
-
-    Raises
-    ------
-    ImportError
-        If pandas is not installed.
-    """
+    """See `Solution.to_pandas`."""
     try:
         import pandas as pd
     except ImportError:
@@ -41,16 +32,7 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
 
 
 def to_xarray(solution: Solution) -> xr.Dataset:
-    """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
-
-    The set's ``attrs["case"]`` is the TOML of what was simulated, unless an effect or an event is
-    a function.
-
-    Raises
-    ------
-    ImportError
-        If xarray is not installed.
-    """
+    """See `Solution.to_xarray`."""
     try:
         import xarray as xr
     except ImportError:
