@@ -195,12 +195,6 @@ class Case:
         return _case, (type(self), self._values())
 
 
-def has_own_functions(solution: Solution) -> bool:
-    """Whether an effect or an event is a function, which no file can hold."""
-    acting = any(isinstance(effect, OwnEffect) for effect in solution.scene.effects)
-    return acting or any(isinstance(event, Function) for event in solution.events_asked_for())
-
-
 def _case(cls: type[Case], values: dict[str, Any]) -> Case:
     return cls(**values)
 

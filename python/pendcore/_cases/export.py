@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
-from pendcore._cases.case import Case, has_own_functions
 from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
@@ -52,6 +51,4 @@ def to_xarray(solution: Solution) -> xr.Dataset:
 
 def _case(solution: Solution) -> dict[Hashable, Any]:
     """Return the case as TOML, or nothing if an effect or an event is a function."""
-    if has_own_functions(solution):
-        return {}
-    return {"case": Case.of_solution(solution).to_toml()}
+    return {} if solution.has_own_functions else {"case": solution.case().to_toml()}

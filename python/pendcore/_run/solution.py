@@ -19,7 +19,7 @@ from pendcore._messages.progress import Progress
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
-from pendcore._run.events import Event, event_of
+from pendcore._run.events import Event, Function, event_of
 from pendcore._run.found_events import FoundEvents, found_events
 from pendcore._run.keywords import OnFailure
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
@@ -232,6 +232,12 @@ class Solution:
     def keeps_every_step(self) -> bool:
         """Whether the kept times are those of the steps, and not those asked for."""
         return self.store in ("dense", "steps") and self._run.arguments["t_eval"] is None
+
+    @property
+    def has_own_functions(self) -> bool:
+        """Whether an effect or an event is a function of the user's, which no file can hold."""
+        acting = any(effect.description.is_function for effect in self.scene.effects)
+        return acting or any(isinstance(event, Function) for event in self.events_asked_for())
 
     @property
     def stats(self) -> Statistics:

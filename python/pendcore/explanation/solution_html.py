@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pendcore import Solution, events
+from pendcore import Solution
 from pendcore.explanation.solution_text import rows_of
 from pendcore.messages import beside, drawing, table
 from pendcore.plotting.curve import Floats, curve_of, span_of
@@ -46,11 +46,8 @@ def _with_dense_output(solution: Solution) -> Solution | None:
 
     A notebook that shows a run waits for no long one, and calls no function of the user's.
     """
-    looked_for = solution.events_asked_for()
-    calls = any(effect.description.is_function for effect in solution.scene.effects)
-    calls |= any(isinstance(event, events.Function) for event in looked_for)
     work = solution.stats.nfev * len(solution.scene.links)
-    if solution.store != "dense" and (work > _QUICK or calls):
+    if solution.store != "dense" and (work > _QUICK or solution.has_own_functions):
         return None
     try:
         return solution.with_dense_output()

@@ -10,7 +10,7 @@ import numpy as np
 from pendcore import Energy, Solution
 from pendcore.plotting.axes import Request, point_style
 from pendcore.plotting.curve import Floats, curve_of
-from pendcore.plotting.style import COLORS, DASHES, SUM
+from pendcore.plotting.style import COLORS, DASHES, OUTSIDE, SUM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,13 +20,6 @@ if TYPE_CHECKING:
 
 _LEAST_SPAN = 0.1
 """deg, the least span of the angle axis, so that rest does not look like its last bits."""
-_OUTSIDE = {
-    "loc": "center left",
-    "bbox_to_anchor": (1.0, 0.5),
-    "fontsize": "small",
-    "frameon": False,
-}
-"""Where the legend of many curves is."""
 
 
 Curves: TypeAlias = "dict[str, tuple[Floats, dict[str, Any]]]"
@@ -56,7 +49,7 @@ def draw_reactions(asked: Request) -> list[Artist]:
         sizes = {f"|{name}|": np.hypot(x, y)}
         panels[f"{name} (N)"] = _colored({f"{name} x": x, f"{name} y": y}, sizes)
     axes = asked.stacked_axes((n,), "one for each joint")
-    return _draw(asked, axes, t, panels, legend=_OUTSIDE)
+    return _draw(asked, axes, t, panels, legend=OUTSIDE)
 
 
 def draw_energy(asked: Request) -> list[Artist]:
@@ -70,14 +63,14 @@ def draw_energy(asked: Request) -> list[Artist]:
         panels["work and loss (J)"] = _colored(booked)
     which = "one for the energies and one for the ledger"
     axes = asked.stacked_axes((len(panels),), which)
-    return _draw(asked, axes, curve.t, panels, legend=_OUTSIDE)
+    return _draw(asked, axes, curve.t, panels, legend=OUTSIDE)
 
 
 def draw_energies(solution: Solution, axis: Axes) -> None:
     """Draw kinetic, potential and total energy, J, on one axes, whatever else there is."""
     curve = curve_of(solution)
     asked = Request(solution=solution)
-    _draw(asked, [axis], curve.t, _energies(curve.energy()), legend=_OUTSIDE)
+    _draw(asked, [axis], curve.t, _energies(curve.energy()), legend=OUTSIDE)
 
 
 def _energies(energy: Energy) -> dict[str, Curves]:

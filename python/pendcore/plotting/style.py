@@ -10,6 +10,13 @@ DASHES = ("-", "--", "-.", ":")
 """For one solution after another on the same axes."""
 SUM: dict[str, Any] = {"color": "0.4", "linewidth": 1.0}
 """How a curve looks that is made of those beside it."""
+OUTSIDE: dict[str, Any] = {
+    "loc": "center left",
+    "bbox_to_anchor": (1.0, 0.5),
+    "fontsize": "small",
+    "frameon": False,
+}
+"""Where the legend of many curves is."""
 SHADE: dict[str, Any] = {
     "facecolor": "0.85",
     "edgecolor": "0.45",
