@@ -296,6 +296,20 @@ class Scene:
         lead, states = self._broadcast(t, q=q)
         return self._compiled.positions(*states).reshape(*lead, len(self.links) + 1, 2)
 
+    def mass_centers(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
+        """Mass centres of the links, a payload excluded, m, (..., n, 2): x right, y down.
+
+        ``t`` and ``q`` are as in `accelerations`.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().mass_centers(0.0, [0.0, np.pi / 2]).round(3)
+        array([[0.5, 0. ],
+               [1. , 0.5]])
+        """
+        lead, states = self._broadcast(t, q=q)
+        return self._compiled.mass_centers(*states).reshape(*lead, len(self.links), 2)
+
     def reactions(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Force on each link at the joint where it begins, N, (..., n, 2): x right, y down.
 

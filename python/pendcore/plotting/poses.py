@@ -57,7 +57,7 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
         raise ValueError(f"t: {len(at)} times: must be one (s): free bodies are of an instant")
     scene, t = asked.solution.scene, float(at[0])
     q, qd = np.split(asked.solution.with_dense_output()(t), 2)
-    pose, centers = _places(scene, t, q)
+    pose, centers = scene.positions(t, q), scene.mass_centers(t, q)
     forces = forces_on_links(scene, t, q, qd)
     reach = _total_length(scene)
     largest = max(float(np.hypot(*force)) for link in forces for _, _, force in link)
@@ -105,7 +105,7 @@ def forces_on_links(
     centre (the payload's at the tip), and what drag and wind make up.
     """
     n, payload = len(scene.links), _payload(scene)
-    pose, centers = _places(scene, t, q)
+    pose, centers = scene.positions(t, q), scene.mass_centers(t, q)
     reactions = scene.reactions(t, q, qd)
     drags = _drags(scene, t, q, qd)
     gravity = np.array([0.0, scene.gravity])
@@ -147,13 +147,6 @@ def _drags(scene: Scene, t: float, q: Floats, qd: Floats) -> Floats:
     needed: Floats = masses * (ends + (centers - lengths) * turned)
     needed[-1] += _payload(scene) * ends[-1]
     return needed - reactions + np.vstack([reactions[1:], np.zeros(2)])
-
-
-def _places(scene: Scene, t: float, q: Floats) -> tuple[Floats, Floats]:
-    """Return pivot, joints and tip, m, (n+1, 2), and the mass centres, (n, 2)."""
-    pose = scene.positions(t, q)
-    centers = np.array([[link.center] for link in scene.links])
-    return pose, pose[:-1] + centers * np.stack([np.cos(q), np.sin(q)], axis=-1)
 
 
 def _payload(scene: Scene) -> float:
