@@ -51,18 +51,18 @@ if TYPE_CHECKING:
     from pendcore._api.ensemble import ensemble
     from pendcore._api.files import load, read_case
     from pendcore._ensemble.ensemble import Ensemble
-    from pendcore._explanation.explanation import Explanation
     from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
     from pendcore.cost.accuracy_cost import AccuracyCost
     from pendcore.cost.horizon import horizon_work
     from pendcore.cost.horizon_work import HorizonWork
     from pendcore.cost.sweep import accuracy_cost
+    from pendcore.explanation.explanation import Explanation
 
 _WHEN_ASKED_FOR = {
     "AccuracyCost": "pendcore.cost.accuracy_cost",
     "Defect": "pendcore._accuracy.defect",
     "Ensemble": "pendcore._ensemble.ensemble",
-    "Explanation": "pendcore._explanation.explanation",
+    "Explanation": "pendcore.explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
     "LyapunovExponents": "pendcore._horizon.lyapunov",
     "accuracy_cost": "pendcore.cost.sweep",

@@ -1,4 +1,4 @@
-"""How pendcore speaks, for extras that are to speak alike: warnings, bars, checks, whole files.
+"""How pendcore speaks, for extras that are to speak alike: warnings, bars, checks, tables, files.
 
 An argument that is wrong is answered with its name, its value, its range and its unit; a file is
 there whole or not at all. The derivation, pages, films, the command line and comparisons of cost
@@ -22,6 +22,7 @@ from pendcore._messages.arguments import (
     whole_number,
 )
 from pendcore._messages.handed_over import forget_inner_runs, hand_over
+from pendcore._messages.html import beside, drawing, table
 from pendcore._messages.json_values import as_json
 from pendcore._messages.progress import Progress, callback, close, reporting
 from pendcore._messages.warning import PendcoreWarning, silence, warn
@@ -31,9 +32,11 @@ __all__ = [
     "PendcoreWarning",
     "Progress",
     "as_json",
+    "beside",
     "callback",
     "close",
     "did_you_mean",
+    "drawing",
     "finite_array",
     "forget_inner_runs",
     "hand_over",
@@ -44,6 +47,7 @@ __all__ = [
     "reporting",
     "require_scene",
     "silence",
+    "table",
     "text",
     "time_limit_of",
     "time_span",

@@ -11,7 +11,6 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore._views.energy_drift import energy_drift
 
 ROD = pc.Link(mass=1.0, length=1.0)
 DAMPED = pc.Scene(links=[ROD, ROD], effects=[
@@ -122,7 +121,7 @@ def test_a_ledger_is_asked_for_by_true_or_false(value):
 
 
 def test_what_effects_change_is_no_drift_and_what_a_ledger_leaves_over_is(sol, ledger):
-    told, untold = energy_drift(sol), energy_drift(simulate())
+    told, untold = sol.energy_drift(), simulate().energy_drift()
     assert told.changed_by == ["viscous_joint", "motor"]
     assert told.largest_drift == np.abs(ledger.residual).max()
     assert untold.largest_drift is untold.relative_drift is None
@@ -133,7 +132,7 @@ def test_what_effects_change_is_no_drift_and_what_a_ledger_leaves_over_is(sol, l
     assert "drift not known (changed by viscous_joint and motor): run with ledger=True" in bare
     assert "too large" not in bare
     coarse = simulate(ledger=True, rtol=0.1, atol=0.1)
-    assert energy_drift(coarse).too_large
+    assert coarse.energy_drift().too_large
     assert "too large to trust this run" in repr(coarse)
     assert "  effects  viscous_joint (2), motor, torsional_spring" in bare
 
@@ -141,14 +140,14 @@ def test_what_effects_change_is_no_drift_and_what_a_ledger_leaves_over_is(sol, l
 def test_springs_are_part_of_what_the_energy_allows_and_one_that_pushes_has_no_bound():
     sprung = pc.Scene(links=[ROD, ROD], effects=[fx.TorsionalSpring(2, 50.0, rest_angle=1.0)])
     every, bound = (
-        energy_drift(pc.simulate(sprung, (0, 20), **START, store=store))
+        pc.simulate(sprung, (0, 20), **START, store=store).energy_drift()
         for store in ("dense", "end")
     )
     assert every.changed_by == []
     assert not every.too_large
     assert every.largest_kinetic <= bound.largest_kinetic * (1 + 1e-6)
     pushed = pc.Scene(links=[ROD], effects=[fx.TorsionalSpring(1, -0.5)])
-    assert not energy_drift(pc.simulate(pushed, (0, 1), 0.5, store="end")).too_large
+    assert not pc.simulate(pushed, (0, 1), 0.5, store="end").energy_drift().too_large
 
 
 def test_energies_of_a_moving_pivot_are_those_of_its_motion():

@@ -38,8 +38,7 @@ def computed(drawn: DrawnRig) -> NDArray[np.float64]:
     """Return d qdd / d (q, qd), (n, 2n)."""
     bodies, gravity, described, (t, q, qd) = drawn
     scene: Any = scene_of(bodies, gravity, described)
-    rows = np.array([t]), np.array([q]), np.array([qd])
-    return np.hstack([of_all[0] for of_all in scene._compiled.jacobian(*rows)])
+    return np.hstack(scene.jacobian(t, q, qd))
 
 
 def exact_and_size(drawn: DrawnRig) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

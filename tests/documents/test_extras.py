@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-EXTRAS = ["films", "page", "cost", "derive", "cli"]
+EXTRAS = ["plotting", "explanation", "page", "cost", "derive", "cli"]
 PROGRAM = """
 import importlib, pkgutil, sys
 import pendcore

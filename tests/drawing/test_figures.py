@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from pendcore._figures.plot import KINDS, save_figure
-from pendcore._figures.poses import forces_on_links
+from pendcore.plotting import KINDS, save_figure
+from pendcore.plotting.poses import forces_on_links
 from runs_that_kept_little import axes
 
 BOOK = pc.Scene.textbook()
@@ -111,7 +111,7 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
         for i, link in enumerate(scene.links)
     ]
     momentum[1] = momentum[1] + 0.4 * np.tensordot(change, tip, 1) / h**2
-    forces = forces_on_links(scene, times[1:2], q[1:2], qd[1:2])
+    forces = forces_on_links(scene, at, q[1], qd[1])
     assert [kind for kind, _, _ in forces[1]] == ["joint", "weight", "weight", "other"]
     for own, of_link in zip(momentum, forces, strict=True):
         assert sum(force for _, _, force in of_link) == pytest.approx(own, rel=1e-4, abs=1e-4)
@@ -123,7 +123,7 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
 def test_a_fast_pivot_is_no_force_on_a_link():
     shaken = pc.effects.DrivenPivot(y=pc.effects.Sinusoid(amplitude=0.01, angular_frequency=5e3))
     scene = BOOK.replace(effects=[shaken, DRAG])
-    state = np.array([1e-3]), np.array([[0.3, 0.9]]), np.array([[2.0, -5.0]])
+    state = 1e-3, np.array([0.3, 0.9]), np.array([2.0, -5.0])
     first, second = forces_on_links(scene, *state)
     assert [kind for kind, _, _ in first] == ["joint", "joint", "weight"]
     assert [kind for kind, _, _ in second] == ["joint", "weight", "other"]

@@ -10,8 +10,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.cli import main
-from pendcore.films import video
-from pendcore.films.frames import frame_times, moves_of
+from pendcore.plotting import video
+from pendcore.plotting.frames import frame_times, moves_of
 from PIL import Image
 from runs_that_kept_little import stage
 

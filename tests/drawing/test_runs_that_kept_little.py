@@ -6,7 +6,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore.cli import main
-from pendcore.films.stage import Stage
+from pendcore.plotting.stage import Stage
 from runs_that_kept_little import BOUNCING, RESTING, RUNS, STOP, axes, few, places, simulate, stage
 
 

@@ -7,8 +7,8 @@ import pendcore as pc
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from pendcore._figures.axes import as_drawn
-from pendcore.films.stage import Choices, Stage
+from pendcore.plotting import as_drawn
+from pendcore.plotting.stage import Choices, Stage
 
 UNREADABLE = ["Ba$$in", r"$\nonsense$", "$a_{$ b", r"\$ $$"]
 NAMES = [*UNREADABLE, "_a", "__", "_$$", "5 $", r"$\theta$ sweep", "plain", "#%&{}^~"]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 from matplotlib.figure import Figure
-from pendcore.films.stage import Choices, Stage
+from pendcore.plotting.stage import Choices, Stage
 
 TEXTBOOK = pc.Scene.textbook()
 STOP = 1.9

@@ -10,7 +10,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore import effects as fx
-from pendcore._explanation.constraints import constraint_jacobian
+from pendcore.explanation.constraints import constraint_jacobian
 
 G = 9.807
 ROD = pc.Link(mass=1.0, length=1.0)

@@ -11,7 +11,6 @@ import numpy as np
 import pendcore as pc
 import pytest
 from pendcore._run import largest_reactions
-from pendcore._views.energy_drift import energy_drift
 from pendcore.cli.summary import facts, text
 
 fx = pc.effects
@@ -225,7 +224,7 @@ def test_a_run_of_which_only_moments_of_rest_were_kept_is_not_blamed():
 def test_where_only_the_end_was_kept_the_total_energy_bounds_the_motion(gravity):
     scene = TWO.replace(gravity=gravity)
     start = {"q0": [1, 2], "qd0": [3, 4], "t_span": (0, 50)}
-    every = energy_drift(pc.simulate(scene, **start))
-    bound = energy_drift(pc.simulate(scene, **start, store="end")).largest_kinetic
+    every = pc.simulate(scene, **start).energy_drift()
+    bound = pc.simulate(scene, **start, store="end").energy_drift().largest_kinetic
     assert every.largest_kinetic <= bound * (1 + 1e-6)
     assert bound < 2 * every.largest_kinetic

@@ -71,6 +71,8 @@ def test_accelerations_broadcast_time_angles_and_rates():
         (np.zeros(0), np.zeros((0, 2)), np.zeros((0, 2)), (0, 2)),
     ):
         assert BOOK.accelerations(t, q, qd).shape == shape
+        assert {x.shape for x in BOOK.jacobian(t, q, qd)} == {(*shape, 2)}
+        assert BOOK.mass_centers(t, q).shape == (*shape, 2)
     assert BOOK.mass_matrix(np.zeros((3, 4, 2))).shape == (3, 4, 2, 2)
 
 

@@ -360,7 +360,7 @@ class Ensemble:
         >>> image.axes.get_xlabel()
         'q0[1] (rad)'
         """
-        from pendcore._ensemble.figure import plot
+        from pendcore.plotting.map import plot
 
         return plot(self, name, ax, resolved, properties)
 

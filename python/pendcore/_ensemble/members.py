@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import _core
 from pendcore._messages.arguments import Floats, real_array
 from pendcore._scene.scene import Scene, check_parameter_names
 
@@ -143,7 +142,7 @@ def member_axes(shape: Index) -> list[str]:
 
 def coordinates(members: Members) -> list[Coordinate]:
     """Return the coordinates of the members: q0, qd0, and what varies."""
-    units = {name: unit for name, unit, _ in _core.parameters(members.scene._compiled)}
+    units = members.scene.parameter_units()
     axes = member_axes(members.shape)
     found = [
         Coordinate("q0", *_needed([*axes, "link"], members.q0), "rad"),

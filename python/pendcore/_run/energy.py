@@ -36,11 +36,18 @@ class Ledger(dict[str, Floats]):
     >>> ledger = sol.energy().ledger
     >>> [*ledger], f"{ledger.viscous[-1]:.3f} J"
     (['viscous', 'residual'], '1.705 J')
+    >>> [*ledger.losses]  # the other entries count work done on the chain
+    ['viscous']
     >>> bool(abs(ledger.residual).max() < 1e-6)
     True
     """
 
     __slots__ = ()
+
+    @property
+    def losses(self) -> frozenset[str]:
+        """The names of the entries that count what is lost."""
+        return LOSSES.intersection(self)
 
     def __getattr__(self, name: str) -> Floats:
         if name not in self:

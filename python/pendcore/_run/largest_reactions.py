@@ -13,7 +13,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.progress import Progress, reporting
-from pendcore._scene.drives import fastest_drive
 from pendcore._scene.scene import Scene
 
 IN_A_PIECE = 8
@@ -120,7 +119,7 @@ class _Search:
 
     def pieces(self) -> Iterator[tuple[Floats, Floats]]:
         """Yield the times at which pieces of steps begin and end, in blocks of bounded size."""
-        starts, drive = self.run.step_starts, fastest_drive(self.scene)
+        starts, drive = self.run.step_starts, self.scene.fastest_drive()
         for first in range(0, len(starts), self.at_once):
             low = starts[first : first + self.at_once]
             high = starts[first + 1 : first + 1 + self.at_once]

@@ -21,7 +21,7 @@ from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
 from pendcore._scene.scene import Scene
-from pendcore.events import Event, Found, FoundEvents, event_of
+from pendcore.events import Event, Found, FoundEvents, Function, event_of
 from pendcore.options import RUN_DEFAULTS, OnFailure
 
 if TYPE_CHECKING:
@@ -32,10 +32,10 @@ if TYPE_CHECKING:
 
     from pendcore._accuracy.defect import Defect
     from pendcore._cases.case import Case
-    from pendcore._figures.plot import What
     from pendcore._horizon.lyapunov import LyapunovExponents
-    from pendcore._views.energy_drift import EnergyDrift
+    from pendcore._run.energy_drift import EnergyDrift
     from pendcore.page.notebook import NotebookPage
+    from pendcore.plotting.plot import What
 
 
 class Statistics(NamedTuple):
@@ -276,6 +276,12 @@ class Solution:
         return self.store in ("dense", "steps") and self._run.arguments["t_eval"] is None
 
     @property
+    def has_own_functions(self) -> bool:
+        """Whether an effect or an event is a function of the user's, which no file can hold."""
+        acting = any(effect.description.is_function for effect in self.scene.effects)
+        return acting or any(isinstance(event, Function) for event in self.events_asked_for())
+
+    @property
     def stats(self) -> Statistics:
         """What the run took: right-hand sides, steps, and what limited them."""
         return Statistics(**self._run.statistics)
@@ -369,20 +375,34 @@ class Solution:
         """
         return self.scene._compiled.reactions(self.t, self.q, self.qd)
 
-    def energy(self) -> Energy:
+    def energy(self, t: npt.ArrayLike | None = None) -> Energy:
         """Kinetic, potential and total energy, J, each (n_t,), and the ledger if one was kept.
+
+        With times ``t`` within the run, s, (k,), those at these times, from the dense output; the
+        errors are as in ``sol(t)``.
 
         Examples
         --------
-        >>> energy = pc.Case.textbook().simulate().energy()
+        >>> sol = pc.Case.textbook().simulate()
+        >>> energy = sol.energy()
         >>> f"{energy.total[0]:.4f} J at first, {energy.total[-1]:.4f} J at last"
         '-14.6484 J at first, -14.6484 J at last'
+        >>> sol.energy([1.0, 2.0]).kinetic.round(3)
+        array([1.27 , 3.676])
         """
         run = self._run
-        return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
+        if t is None:
+            return energy_over(self.scene, run.arguments, run.t, run.states, run.ledger)
+        times = finite_array("t", t, "s")
+        if times.ndim != 1:
+            raise ValueError(f"t: shape {times.shape}: must be (k,) (s)")
+        found = run.evaluate(times), run.ledger_at(times)
+        return energy_over(self.scene, run.arguments, times, *found)
 
-    def energy_drift(self) -> EnergyDrift:
+    def energy_drift(self, every: int = 1) -> EnergyDrift:
         """Return how well the run kept its energy, or the ledger's balance where effects do work.
+
+        With ``every``, it is computed from one kept time in so many, which is faster.
 
         Examples
         --------
@@ -390,9 +410,9 @@ class Solution:
         >>> f"{drift.largest_drift:.0e} J", drift.too_large
         ('7e-09 J', False)
         """
-        from pendcore._views.energy_drift import energy_drift
+        from pendcore._run.energy_drift import energy_drift
 
-        return energy_drift(self)
+        return energy_drift(self, every)
 
     def trusted_digits(self) -> int:
         """Return how many digits of the run's forces are worth printing, 2 to 6.
@@ -405,7 +425,7 @@ class Solution:
         >>> pc.Case.textbook().simulate().trusted_digits()
         6
         """
-        from pendcore._views.trusted_digits import trusted_digits
+        from pendcore._run.energy_drift import trusted_digits
 
         return trusted_digits(self)
 
@@ -629,7 +649,9 @@ class Solution:
     def to_pandas(self) -> pd.DataFrame:
         """Return a table with a row per time and the columns q_1.., qd_1..; units in ``attrs``.
 
-        Times are in s, angles in rad, rates in rad/s.
+        Times are in s, angles in rad, rates in rad/s. ``attrs`` also holds ``case``, the TOML of
+        what was simulated, unless an effect or an event is a function. ImportError if pandas is not
+        installed.
 
         Examples
         --------
@@ -640,14 +662,15 @@ class Solution:
         >>> table.attrs["units"]["qd_2"]
         'rad/s'
         """
-        from pendcore._views.export import to_pandas
+        from pendcore._cases.export import to_pandas
 
         return to_pandas(self)
 
     def to_xarray(self) -> xr.Dataset:
         """Return ``q`` and ``qd`` over time and link; units and the case in ``attrs``.
 
-        Times are in s, angles in rad, rates in rad/s; each is (n_t, n).
+        Times are in s, angles in rad, rates in rad/s; each is (n_t, n). The case is there as TOML
+        unless an effect or an event is a function. ImportError if xarray is not installed.
 
         Examples
         --------
@@ -656,7 +679,7 @@ class Solution:
         >>> f"{data.qd.sel(link=2)[-1]:.4f} {data.qd.attrs['units']}"
         '0.3936 rad/s'
         """
-        from pendcore._views.export import to_xarray
+        from pendcore._cases.export import to_xarray
 
         return to_xarray(self)
 
@@ -670,12 +693,12 @@ class Solution:
         return make(*parts)  # none of these ever changes, so the copy shares them
 
     def __repr__(self) -> str:
-        from pendcore._views.table import text
+        from pendcore.explanation.solution_text import text
 
         return text(self)
 
     def _repr_html_(self) -> str:
-        from pendcore._views.table import html
+        from pendcore.explanation.solution_html import html
 
         return html(self)
 
@@ -750,12 +773,10 @@ class Solution:
         >>> sol.plot(what="path")[0].axes.get_ylabel()
         'y (m), downwards'
         """
-        from pendcore._figures.plot import plot
+        from pendcore.plotting.plot import plot
 
-        return plot(
-            self, ax, what=what, label=label, horizon=horizon, t=t, event=event, link=link,
-            **line_properties,
-        )  # fmt: skip
+        own = {"t": t, "event": event, "link": link, "label": label}
+        return plot(self, ax, what, horizon, own, line_properties)
 
     def animate(
         self,
@@ -781,14 +802,13 @@ class Solution:
         >>> len([*animation.new_frame_seq()])  # 5 s at 30 frames a second
         151
         """
-        from pendcore.films.animate import animate
-        from pendcore.films.stage import Choices
+        from pendcore.plotting.stage import Choices, animate
 
         given = Choices(
             speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
             horizon=horizon, beside=beside,
         )  # fmt: skip
-        return animate((self, *others), _names((self, *others), names), given)
+        return animate((self, *others), names, given)
 
     def to_video(
         self,
@@ -844,15 +864,14 @@ class Solution:
         >>> sol.to_video("swing.gif", speed=2).name
         'swing.gif'
         """
-        from pendcore.films.stage import Choices
-        from pendcore.films.video import to_video
+        from pendcore.plotting.stage import Choices
+        from pendcore.plotting.video import to_video
 
         given = Choices(
             speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
             horizon=horizon, beside=beside,
         )  # fmt: skip
-        runs = self, *others
-        return to_video(runs, _names(runs, names), path, given, size, progress)
+        return to_video((self, *others), names, path, given, size, progress)
 
     def to_html(self, path: str | os.PathLike[str], *, title: str | None = None) -> Path:
         """Write the run as one page with the core inside, which opens from disk; return its path.
@@ -920,17 +939,3 @@ class Solution:
 
         pixels = whole_number("height", height)
         return widget_of(page_of(self), pixels)
-
-
-def _names(runs: tuple[Solution, ...], given: tuple[str, ...] | None) -> tuple[str, ...]:
-    """Return what the legend calls the runs; nothing for one that is alone."""
-    for one in runs:
-        if not isinstance(one, Solution):
-            raise TypeError(f"{one!r}: must be a Solution, to be shown beside this one")
-    if given is None:
-        return tuple(one.name if len(runs) > 1 else "" for one in runs)
-    if isinstance(given, str) or len(given) != len(runs):
-        raise ValueError(f"names = {given!r}: must be {len(runs)}, one for each run")
-    return tuple(
-        text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
-    )

@@ -92,6 +92,18 @@ class Effect(Described):
         if cls.__name__ in DESCRIPTIONS:
             cls.kind = cls.description.kind
 
+    def parts(self) -> dict[str, Part]:
+        """Return the parts that it has, by the names of its parameters.
+
+        Examples
+        --------
+        >>> wave = pc.effects.Sinusoid(amplitude=3.0, angular_frequency=6.0)
+        >>> pc.effects.Motor(joint=1, sinusoid=wave).parts() == {"sinusoid": wave}
+        True
+        """
+        values = {p.name: getattr(self, p.name) for p in self.description.parameters}
+        return {name: value for name, value in values.items() if isinstance(value, Part)}
+
     def _check(self, where: str) -> None:
         _core.check_effect(where, self._as_pair())
 

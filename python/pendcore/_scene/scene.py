@@ -31,8 +31,7 @@ from pendcore._scene.link import Link
 from pendcore._scene.parametrized import tuple_of
 
 if TYPE_CHECKING:
-    from pendcore._explanation.explanation import Explanation
-    from pendcore._explanation.not_modelled import Absence
+    from pendcore.explanation.explanation import Absence, Explanation
 
 _PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
 """The name of a parameter, as the core lists them (cpp/include/pendcore/parameters.hpp)."""
@@ -182,6 +181,16 @@ class Scene:
         """
         return {name: value for name, _, value in _core.parameters(self._compiled)}
 
+    def parameter_units(self) -> dict[str, str]:
+        """Return the unit of every parameter; empty for a ratio.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().parameter_units()["link[1].inertia"]
+        'kg m^2'
+        """
+        return {name: unit for name, unit, _ in _core.parameters(self._compiled)}
+
     def with_parameters(self, values: Mapping[str, float]) -> Self:
         """Return a scene with other values of some parameters; see `parameters` for their names.
 
@@ -255,6 +264,30 @@ class Scene:
         lead, states = self._broadcast(t, q=q, qd=qd)
         return self._compiled.accelerations(*states).reshape(*lead, len(self.links))
 
+    def jacobian(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of the `accelerations` by the angles and by the rates, to the last bits.
+
+        The arguments are as in `accelerations`. Functions of the user's alone are differentiated by
+        differences.
+
+        Returns
+        -------
+        by_q, by_qd : ndarray, (..., n, n)
+            1/s^2 and 1/s: row i has the derivatives of the acceleration of link i.
+
+        Examples
+        --------
+        >>> by_q, by_qd = pc.Scene.textbook().jacobian(0.0, q=[np.pi / 2, np.pi / 2], qd=[0.0, 0.0])
+        >>> np.sqrt(-np.linalg.eigvals(by_q)).round(3)  # rad/s, about hanging
+        array([2.68 , 7.188])
+        """
+        lead, states = self._broadcast(t, q=q, qd=qd)
+        n = len(self.links)
+        by_q, by_qd = self._compiled.jacobian(*states)
+        return by_q.reshape(*lead, n, n), by_qd.reshape(*lead, n, n)
+
     def positions(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Pivot, joints and tip, m, (..., n+1, 2): x right, y down; a driven pivot moves.
 
@@ -269,6 +302,20 @@ class Scene:
         """
         lead, states = self._broadcast(t, q=q)
         return self._compiled.positions(*states).reshape(*lead, len(self.links) + 1, 2)
+
+    def mass_centers(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
+        """Mass centres of the links, a payload excluded, m, (..., n, 2): x right, y down.
+
+        ``t`` and ``q`` are as in `accelerations`.
+
+        Examples
+        --------
+        >>> pc.Scene.textbook().mass_centers(0.0, [0.0, np.pi / 2]).round(3)
+        array([[0.5, 0. ],
+               [1. , 0.5]])
+        """
+        lead, states = self._broadcast(t, q=q)
+        return self._compiled.mass_centers(*states).reshape(*lead, len(self.links), 2)
 
     def reactions(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Force on each link at the joint where it begins, N, (..., n, 2): x right, y down.
@@ -398,6 +445,18 @@ class Scene:
         """
         return Mobility(*self._compiled.mobility())
 
+    def fastest_drive(self) -> float:
+        """Return the largest angular frequency of a sinusoid, rad/s; 0 if there is none.
+
+        Examples
+        --------
+        >>> shaken = pc.effects.DrivenPivot(y=pc.effects.Sinusoid(0.01, angular_frequency=350.0))
+        >>> pc.Scene.textbook().replace(effects=[shaken]).fastest_drive()
+        350.0
+        """
+        parts = (part for effect in self.effects for part in effect.parts().values())
+        return max((abs(getattr(x, "angular_frequency", 0.0)) for x in parts), default=0.0)
+
     def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
         """Say what is simulated and what is not, what it costs, and how fast it moves.
 
@@ -422,11 +481,12 @@ class Scene:
         >>> [f"{mode.frequency:.3f} Hz" for mode in hanging.modes]
         ['0.426 Hz', '1.144 Hz']
         """
-        from pendcore._explanation.explain import explain
+        from pendcore.explanation.explain import explain
 
         start = None if q is None else vector("q", q, len(self.links), "rad")
         (time,) = vector("t", t, 1, "s")
-        return explain(self, time, start)
+        lanes = _core.methods_with_lanes(self._compiled)
+        return explain(self, time, start, self._compiled.costs(), lanes)
 
     def not_simulated(self) -> list[Absence]:
         """Return the effects that the scene does not have, and physics that no effect models.
@@ -436,9 +496,9 @@ class Scene:
         >>> "payload" in [absence.kind for absence in pc.Scene.textbook().not_simulated()]
         True
         """
-        from pendcore._explanation.not_modelled import absent
+        from pendcore.explanation.explain import absent
 
-        return [*absent(self)]
+        return absent(self)
 
     def run_warnings(self, q0: npt.ArrayLike, t_span: Iterable[float]) -> list[str]:
         """Return what `simulate` would warn of in a start (rad) and a span (s).

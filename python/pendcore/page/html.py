@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from pendcore import Case, Solution, build, effects, simulate
-from pendcore.films.frames import moves_of
 from pendcore.messages import silence, text
 from pendcore.methods import known_methods
 from pendcore.options import OPTIONS
+from pendcore.plotting.frames import moves_of
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""

@@ -1,8 +1,8 @@
 """Where a scene is in balance, and how it moves about there.
 
-With a chain's free angles z (what is locked turns together), the accelerations at rest are
-zdd = f(z, 0), t frozen. Newton's method finds f = 0; about it, with A = df/dz and B = df/dzd by
-central differences, the eigenvalues of
+With a chain's free angles z (what is locked turns together), the accelerations are zdd = f(z, zd),
+t frozen. Newton's method finds f(z, 0) = 0; about it, with A = df/dz and B = df/dzd, the
+eigenvalues of
 
     d/dt (dz, dzd) = ((0, 1), (A, B)) (dz, dzd)
 
@@ -24,16 +24,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._explanation.constraints import locks
-from pendcore._messages.arguments import Floats
-from pendcore._scene.scene import Scene
+from pendcore import Scene
+from pendcore.explanation.constraints import Floats, locks
+from pendcore.messages import silence
 
-_STEP = 1e-5
-"""rad and rad/s, the step of the differences, at which truncation and rounding are about equal."""
 _LONGEST = 0.5
 """rad, the largest step of Newton's method, which is not to reach a distant equilibrium."""
 _NOISE = 1e-5
-"""The growth that counts as zero, as a share of the mode's size: differences are that inexact."""
+"""The growth that counts as zero, as a share of the mode's size: nearly equal eigenvalues are that
+inexact, and so are the differences by which functions of the user's are differentiated."""
 _SLOW = 1e-3
 """The share of the stiffest rate below which a rate comes from the inverse."""
 _SINGULAR = 1e-12
@@ -107,55 +106,44 @@ class FreeAngles:
         """A joint that is locked where it starts is locked as in ``start``, rad."""
         self._scene, self._t = scene, t
         locked, n = locks(scene), len(scene.links)
+        self.leaders = [i for i in range(n) if i + 1 not in locked]
+        """The links that do not turn with the one before, or the ground."""
+        self._turning = np.zeros((n, len(self.leaders)))
+        """(n, m): which links turn with each of the free angles."""
         self._fixed = np.zeros(n)
         """The angle of each link against the first link that turns with it, or the ground, rad."""
-        self.leaders: list[int] = []
-        self._turning = np.zeros((n, 0))
-        """(n, m): which links turn with each of the free angles."""
-        for i in range(n):
-            if i + 1 not in locked:
-                self.leaders.append(i)
-                self._turning = np.hstack([self._turning, np.zeros((n, 1))])
-                self._turning[i, -1] = 1.0
-                continue
-            before = start[i - 1] if i else 0.0
-            angle = locked[i + 1]
-            self._fixed[i] = start[i] - before if angle is None else angle
+        for k, i in enumerate(self.leaders):
+            self._turning[i, k] = 1.0
+        for joint, angle in sorted(locked.items()):
+            i = joint - 1
+            self._fixed[i] = np.diff(start, prepend=0.0)[i] if angle is None else angle
             if i:
                 self._fixed[i] += self._fixed[i - 1]
                 self._turning[i] = self._turning[i - 1]
 
     def q(self, z: Floats) -> Floats:
-        """Angles of all links, (..., n), from the free ones, (..., m)."""
-        return z @ self._turning.T + self._fixed
+        """Angles of all links, (n,), from the free ones, (m,)."""
+        return self._turning @ z + self._fixed
 
-    def accelerations(self, z: Floats, zd: Floats) -> Floats:
-        """Return the accelerations of the free angles, (..., m)."""
-        found = self._scene.accelerations(self._t, self.q(z), zd @ self._turning.T)
-        return found[..., self.leaders]
-
-    def linearised(self, z: Floats) -> tuple[Floats, Floats]:
-        """Derivatives of the accelerations at rest by angles and by rates, (m, m) each."""
-        m = len(self.leaders)
-        small, still = np.eye(m) * _STEP, np.zeros((m, m))
-        at = np.broadcast_to(z, (m, m))
-        by_angle = self.accelerations(z + small, still) - self.accelerations(z - small, still)
-        by_rate = self.accelerations(at, small) - self.accelerations(at, -small)
-        return by_angle.T / (2 * _STEP), by_rate.T / (2 * _STEP)
+    def linearised(self, z: Floats) -> tuple[Floats, Floats, Floats]:
+        """Accelerations at rest, (m,), and their derivatives by angles and by rates, (m, m)."""
+        at_rest = self._t, self.q(z), np.zeros(len(self._fixed))
+        by_q, by_qd = (one @ self._turning for one in self._scene.jacobian(*at_rest))
+        found = self._scene.accelerations(*at_rest), by_q, by_qd
+        residual, slope, by_rate = (one[self.leaders] for one in found)
+        return residual, slope, by_rate
 
     def balanced_near(self, z: Floats) -> Floats | None:
         """Free angles near these at which nothing accelerates, by Newton's method."""
-        still = np.zeros_like(z)
         for _ in range(100):
-            residual = self.accelerations(z, still)
-            slope, _ = self.linearised(z)
+            residual, slope, _ = self.linearised(z)
             if not (np.isfinite(residual).all() and np.isfinite(slope).all()):
                 return None
             step = np.linalg.lstsq(slope, -residual, rcond=1e-10)[0]
             size = float(np.abs(step).max(initial=0.0))
             z = z + step * min(1.0, _LONGEST / size if size else 1.0)
             if size < 1e-10:
-                after = np.abs(self.accelerations(z, still)).max(initial=0.0)
+                after = np.abs(self.linearised(z)[0]).max(initial=0.0)
                 return z if after <= 1e-7 * max(1.0, np.abs(slope).max(initial=0.0)) else None
         return None
 
@@ -174,7 +162,8 @@ def find_equilibria(
     smooth = [one for one in scene.effects if not one.description.jumps_or_sticks]
     present = {effect.kind for effect in scene.effects}
     remarks += [remark for kind, remark in _LEFT_OUT.items() if kind in present]
-    scene = Scene._unpickled(scene.links, scene.gravity, smooth)
+    with silence():  # what is implausible was said when the scene was made
+        scene = scene.replace(effects=smooth)
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:
         remarks.append(
@@ -185,10 +174,10 @@ def find_equilibria(
     found: list[Floats] = []
     for name, pose in poses.items():
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
-        z = pose[free.leaders]
-        balanced = free.balanced_near(z)
+        balanced = free.balanced_near(pose[free.leaders])
+        slopes = None if balanced is None else free.linearised(balanced)[1:]
         # Damping can be so large that the modes of an equilibrium are not finite.
-        if balanced is None or not all(np.isfinite(x).all() for x in free.linearised(balanced)):
+        if balanced is None or slopes is None or not np.isfinite(slopes).all():
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
         q = free.q(balanced)
@@ -196,20 +185,19 @@ def find_equilibria(
             continue
         found.append(q)
         moved = np.abs(np.sin((q - pose) / 2)).max() > 1e-6
-        yield _described(f"found from {name}" if moved else name, free, balanced)
+        yield _described(f"found from {name}" if moved else name, q, *slopes)
 
 
-def _described(name: str, free: FreeAngles, z: Floats) -> Equilibrium:
-    rates, turns_back = _rates_about(*free.linearised(z))
-    modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_size)
+def _described(name: str, q: Floats, by_angle: Floats, by_rate: Floats) -> Equilibrium:
+    rates, turns_back = _rates_about(by_angle, by_rate)
+    modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_place)
     grows = any(mode.rate > _NOISE * _size(mode) for mode in modes)
-    q = tuple((free.q(z) + 0.0).tolist())  # no -0.0
     return Equilibrium(
-        name,
-        q,
-        "unstable" if grows else "stable" if turns_back else "indifferent",
-        tuple(modes),
-        float(np.abs(rates).max(initial=0.0)),
+        name=name,
+        q=tuple((q + 0.0).tolist()),  # no -0.0
+        stability="unstable" if grows else "stable" if turns_back else "indifferent",
+        modes=tuple(modes),
+        stiffest_rate=float(np.abs(rates).max(initial=0.0)),
     )
 
 
@@ -241,6 +229,11 @@ def _mode(eigenvalue: complex) -> Mode:
     if eigenvalue.imag == 0:
         return Mode(rate, 0.0, 0.0, None)
     return Mode(rate, w, w / (2 * pi), 0.0 - rate / w)
+
+
+def _place(mode: Mode) -> tuple[float, float]:
+    """Return what sorts modes: the slowest first; of two that are equally fast, what grows."""
+    return float(f"{_size(mode):.9e}"), -mode.rate
 
 
 def _size(mode: Mode) -> float:

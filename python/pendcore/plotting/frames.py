@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import positive
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    Floats = npt.NDArray[np.float64]
+from pendcore.plotting.curve import Floats
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
@@ -57,11 +52,8 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
     """Return the times of the frames, s: those of the longest run, at `speed` times true time."""
     rate = positive("fps", fps, "1/s")
     faster = positive("speed", speed, "")
-    starts = [one.t_span[0] for one in solutions]
-    ends = [one.t_reached for one in solutions]
-    lengths = [end - start for start, end in zip(starts, ends, strict=True)]
-    longest = int(np.argmax(np.abs(lengths)))
-    start, length = starts[longest], lengths[longest]
+    longest = max(solutions, key=lambda one: abs(one.t_reached - one.t_span[0]))
+    start, length = longest.t_span[0], longest.t_reached - longest.t_span[0]
     count = abs(length) / faster * rate
     if count > MOST_FRAMES:
         raise ValueError(
@@ -78,19 +70,18 @@ def moves_of(solution: Solution, times: Floats) -> Moves:
     solution = solution.with_dense_output()
     start, end = solution.t_span[0], solution.t_reached
     at = np.clip(times, min(start, end), max(start, end))
-    states = solution(at).T
-    n = len(solution.scene.links)
-    parts = _parts(at, states[:, n:])
-    places = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
-    along = np.interp(places, np.arange(len(at)), at)
-    scene = solution.scene
+    states, scene = solution(at).T, solution.scene
+    q, qd = np.hsplit(states, 2)
+    parts = _parts(at, qd)
+    between = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
+    along = np.interp(between, np.arange(len(at)), at)
     return Moves(
-        states,
-        scene.positions(at, states[:, :n]),
-        scene.reactions(at, states[:, :n], states[:, n:]),
-        scene.positions(along, solution(along)[:n].T)[:, -1],
-        parts,
-        float(sum(link.length for link in solution.scene.links)),
+        states=states,
+        places=scene.positions(at, q),
+        reactions=scene.reactions(at, q, qd),
+        path=scene.positions(along, np.hsplit(solution(along).T, 2)[0])[:, -1],
+        parts=parts,
+        total_length=float(sum(link.length for link in scene.links)),
     )
 
 

@@ -9,23 +9,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore import Solution
-from pendcore.films.frames import Moves, frame_times, moves_of
-from pendcore.messages import number, positive
-from pendcore.plotting import draw_energies, horizon_time, in_legend, in_plane
+from pendcore.messages import number, positive, text
+from pendcore.plotting.axes import figure_of_pyplot, in_plane
+from pendcore.plotting.curve import Floats
+from pendcore.plotting.frames import Moves, frame_times, moves_of
+from pendcore.plotting.over_time import draw_energies
+from pendcore.plotting.style import CHAINS, LOST, REACTION, in_legend
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
+    from matplotlib.animation import FuncAnimation
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
-    Floats = npt.NDArray[np.float64]
-
-_CHAINS = ("0.1", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:brown")
-_LOST = "0.72"
-"""The colour of a run past the time until which it can be trusted."""
-_FORCE = "tab:orange"
 _ARROW = 0.4
 """How long the largest arrow is, as a share of the total length."""
 
@@ -43,6 +39,34 @@ class Choices:
     beside: bool = False
 
 
+def animate(
+    solutions: Sequence[Solution], names: Sequence[str | None] | None, choices: Choices
+) -> FuncAnimation:
+    """Return matplotlib's animation; it must be kept as long as it is to move."""
+    from matplotlib.animation import FuncAnimation
+
+    known = names_of(solutions, names)
+    width = 6.4 * (len(solutions) if choices.beside else 1)
+    figure = figure_of_pyplot(figsize=(min(width, 16.0), 6.4 if choices.energy else 5.4))
+    stage = Stage(solutions, figure, choices, known)
+    frames, interval = len(stage.times), 1000.0 / choices.fps
+    return FuncAnimation(figure, stage.show, frames, interval=interval, blit=True)
+
+
+def names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tuple[str, ...]:
+    """Return what the legend calls the runs; nothing for one that is alone."""
+    for one in runs:
+        if not isinstance(one, Solution):
+            raise TypeError(f"{one!r}: must be a Solution, to be shown beside this one")
+    if given is None:
+        return tuple(one.name if len(runs) > 1 else "" for one in runs)
+    if isinstance(given, str) or len(given) != len(runs):
+        raise ValueError(f"names = {given!r}: must be {len(runs)}, one for each run")
+    return tuple(
+        text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
+    )
+
+
 class Stage:
     """A figure, and what has to be drawn anew in each of its frames.
 
@@ -58,7 +82,6 @@ class Stage:
     ) -> None:
         self.figure = figure
         self.times = frame_times(solutions, choices.fps, choices.speed)
-        self._players: list[_Player] = []
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
         scenes, strip = _layout(figure, len(solutions), choices)
@@ -67,36 +90,38 @@ class Stage:
         scale = _ARROW * length / (largest or 1.0) if choices.reactions else 0.0
         for axis in scenes:
             _frame_scene(axis, moves, scale)
+        self._players: list[_Player] = []
         for k, (solution, one) in enumerate(zip(solutions, moves, strict=True)):
-            axis = scenes[k % len(scenes)]
-            until = _last_right_frame(solution, self.times, choices)
-            player = _Player(axis, one, _CHAINS[k % len(_CHAINS)], choices, until, scale)
-            self._players.append(player)
+            axis, color = scenes[k % len(scenes)], CHAINS[k % len(CHAINS)]
+            until = _last_right_frame(solution, self.times, choices.horizon)
+            self._players.append(_Player(axis, one, color, choices, until, scale))
             if names[k]:
-                axis.plot([], [], color=player.color, linewidth=3, label=in_legend(names[k]))
+                axis.plot([], [], color=color, linewidth=3, label=in_legend(names[k]))
         for axis in scenes:
             if axis.get_legend_handles_labels()[0]:
                 axis.legend(loc="upper right", fontsize="small")
-        self._clock = scenes[0].text(
-            0.02, 0.98, "", transform=scenes[0].transAxes, ha="left", va="top", family="monospace"
-        )
+        corner: dict[str, Any] = {"transform": scenes[0].transAxes, "ha": "left", "va": "top"}
+        self._clock = scenes[0].text(0.02, 0.98, "", family="monospace", **corner)
         self._pace = "" if choices.speed == 1.0 else f"  (x{choices.speed:g})"
-        self._now = None if strip is None else _energy_strip(strip, dense[0])
+        self._now: list[Any] = []
+        if strip is not None:
+            draw_energies(dense[0], strip)
+            self._now = [strip.axvline(dense[0].t_span[0], color="0.2", linewidth=1.0)]
         for artist in self.moving():
             artist.set_animated(True)
 
     def moving(self) -> list[Artist]:
         """Return what has to be drawn anew in each frame, the lowest first."""
         moving = [artist for player in self._players for artist in player.artists]
-        return [*moving, self._clock, *([] if self._now is None else [self._now])]
+        return [*moving, self._clock, *self._now]
 
     def show(self, k: int) -> list[Artist]:
         """Move everything to where it is in frame k, and return it."""
         for player in self._players:
             player.show(k)
         self._clock.set_text(f"t = {self.times[k]:.2f} s{self._pace}")
-        if self._now is not None:
-            self._now.set_xdata([self.times[k], self.times[k]])
+        for line in self._now:
+            line.set_xdata([self.times[k], self.times[k]])
         return self.moving()
 
 
@@ -112,8 +137,8 @@ class _Player:
         last_right: int,
         scale: float,
     ) -> None:
-        self.color = color
-        self._moves, self._last_right, self._scale = moves, last_right, scale
+        self._color, self._moves = color, moves
+        self._last_right, self._scale = last_right, scale
         frames = _trace(choices.trace) * choices.fps / choices.speed
         self._behind = round(min(frames, len(moves.places)))
         (self._trace,) = axis.plot([], [], "-", color=color, linewidth=1.2, alpha=0.55, zorder=2)
@@ -122,22 +147,20 @@ class _Player:
         )
         self.artists: list[Artist] = [self._trace, self._chain]
         self._arrows: Any = None
-        self._sizes: list[Any] = []
         if choices.reactions:
             n = moves.reactions.shape[1]
             self._arrows = axis.quiver(
-                *np.zeros((4, n)), color=_FORCE, angles="xy", scale_units="xy", scale=1.0,
+                *np.zeros((4, n)), color=REACTION, angles="xy", scale_units="xy", scale=1.0,
                 width=0.004, zorder=4,
             )  # fmt: skip
-            self._sizes = [
-                axis.text(0.0, 0.0, "", color=_FORCE, fontsize="small", zorder=5) for _ in range(n)
-            ]
+            how: dict[str, Any] = {"color": REACTION, "fontsize": "small", "zorder": 5}
+            self._sizes = [axis.text(0.0, 0.0, "", **how) for _ in range(n)]
             self.artists += [self._arrows, *self._sizes]
 
     def show(self, k: int) -> None:
-        places = self._moves.places
-        color = self.color if k <= self._last_right else _LOST
-        self._chain.set_data(*places[k].T)
+        places = self._moves.places[k]
+        color = self._color if k <= self._last_right else LOST
+        self._chain.set_data(*places.T)
         self._chain.set_color(color)
         if self._behind > 0:
             parts = self._moves.parts
@@ -145,14 +168,13 @@ class _Player:
             self._trace.set_data(*self._moves.path[first : parts * k + 1].T)
             self._trace.set_color(color)
         if self._arrows is not None:
-            self._arrows.set_offsets(places[k, :-1])
-            force = self._scale * self._moves.reactions[k]
-            self._arrows.set_UVC(force[:, 0], force[:, 1])
-            for at, size, newtons in zip(
-                places[k, :-1] + force, self._sizes, self._moves.reactions[k], strict=True
-            ):
-                size.set_position((at[0], at[1]))
-                size.set_text(f" {np.hypot(*newtons):.3g} N")
+            newtons = self._moves.reactions[k]
+            force = self._scale * newtons
+            self._arrows.set_offsets(places[:-1])
+            self._arrows.set_UVC(*force.T)
+            for at, size, one in zip(places[:-1] + force, self._sizes, newtons, strict=True):
+                size.set_position(at)
+                size.set_text(f" {np.hypot(*one):.3g} N")
 
 
 def _trace(given: float | None) -> float:
@@ -187,17 +209,11 @@ def _frame_scene(axis: Axes, moves: Sequence[Moves], scale: float) -> None:
     axis.plot(*pivots.T, "^", color="0.5", markersize=9, zorder=1, linestyle="")
 
 
-def _last_right_frame(solution: Solution, times: Floats, choices: Choices) -> int:
-    if choices.horizon is not None:
-        positive("horizon", choices.horizon, "rad")
-    valid = horizon_time(solution, choices.horizon)
-    if valid is None or valid == solution.t_reached:
+def _last_right_frame(solution: Solution, times: Floats, horizon: float | None) -> int:
+    if horizon is None:
+        return len(times)
+    valid = solution.valid_until(positive("horizon", horizon, "rad"))
+    if valid == solution.t_reached:
         return len(times)
     past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0
     return int(np.argmax(past)) - 1 if past.any() else len(times)
-
-
-def _energy_strip(axis: Axes, solution: Solution) -> Line2D:
-    """Draw the energies over time, and return the line that moves along."""
-    draw_energies(solution, axis)
-    return axis.axvline(solution.t_span[0], color="0.2", linewidth=1.0)

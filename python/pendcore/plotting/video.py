@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore import Solution
-from pendcore.films.stage import Choices, Stage
 from pendcore.messages import Progress, callback, close, warn, whole_file, whole_number
+from pendcore.plotting.stage import Choices, Stage, names_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -34,7 +34,7 @@ _GIF_TICK = 10
 
 def to_video(
     solutions: Sequence[Solution],
-    names: Sequence[str],
+    names: Sequence[str | None] | None,
     path: str | os.PathLike[str],
     choices: Choices,
     size: tuple[int, int] | None = None,
@@ -44,6 +44,7 @@ def to_video(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    known = names_of(solutions, names)
     target = Path(path)
     kind = target.suffix.lower()
     if kind not in SIZES:
@@ -64,7 +65,7 @@ def to_video(
     dpi = _DPI[kind] * width / SIZES[kind][0]
     figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
     canvas = FigureCanvasAgg(figure)
-    stage = Stage(solutions, figure, choices, names)
+    stage = Stage(solutions, figure, choices, known)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
         raise ValueError(
@@ -160,8 +161,12 @@ def _write_gif(
     fps: float,
 ) -> None:
     """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
+    from PIL.Image import Dither
+
     palette = _palette(samples, size)
-    first, *rest = (_with_palette(picture, palette, size) for picture in pictures)
+    first, *rest = (
+        _rgb(picture, size).quantize(palette=palette, dither=Dither.NONE) for picture in pictures
+    )
     ticks = [round((k + 1) * 1000 / fps / _GIF_TICK) for k in range(len(rest) + 1)]
     durations = [_GIF_TICK * (b - a) for a, b in zip([0, *ticks], ticks, strict=False)]
     first.save(
@@ -188,9 +193,3 @@ def _rgb(picture: memoryview, size: tuple[int, int]) -> Image:
     from PIL.Image import frombuffer
 
     return frombuffer("RGBA", size, bytes(picture), "raw", "RGBA", 0, 1).convert("RGB")
-
-
-def _with_palette(picture: memoryview, palette: Image, size: tuple[int, int]) -> Image:
-    from PIL.Image import Dither
-
-    return _rgb(picture, size).quantize(palette=palette, dither=Dither.NONE)

@@ -1,8 +1,11 @@
-"""How well a run kept its energy, which tells of its error without further runs."""
+"""How well a run kept its energy, which tells of its error without further runs.
+
+And how many digits of its forces are worth printing: no more than its own error leaves right.
+"""
 
 from __future__ import annotations
 
-from math import pi
+from math import floor, isfinite, log10, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +15,11 @@ from pendcore._scene.scene import Scene
 from pendcore.effects import KINDS
 
 TOO_LARGE = "too large to trust this run: tighten rtol and atol (or the step)"
+AMPLIFIED = 10.0
+"""The ratio of a force's relative error to the tolerance, at most: errors of steps add up in a run,
+as they have in its drift already."""
+FEWEST, MOST = 2, 6
+"""The least and the most digits of a force."""
 
 
 class EnergyDrift(NamedTuple):
@@ -72,11 +80,11 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
         drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
     ends = float(total[0]), float(total[-1])
     if working:
-        residual = _residual(solution)
-        if residual is None:
+        ledger = solution.energy().ledger
+        if ledger is None:
             bad = not np.isfinite(ends[1])
             return EnergyDrift(*ends, None, moving, None, bad, working, ledger=False)
-        drift = residual
+        drift = float(np.abs(ledger.residual).max(initial=0.0))
     elif every > 1 or not solution.keeps_every_step:
         moving = max(moving, float(total[0]) - _lowest_potential(solution.scene))
     # The last bits of the potential energy are no drift, however slow the motion.
@@ -86,18 +94,24 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     return EnergyDrift(*ends, drift, moving, share, too_large, working, asked["ledger"])
 
 
+def trusted_digits(solution: Solution) -> int:
+    """See `Solution.trusted_digits`."""
+    asked, accuracy = solution.options, solution.accuracy
+    shares = [solution.energy_drift().relative_drift or 0.0]
+    if asked["step"] is None:  # else tolerances set no step
+        shares.append(AMPLIFIED * float(np.max(asked["rtol"])))
+    if accuracy is not None and accuracy.times:
+        shares.append(accuracy.achieved)
+    share = max(shares)
+    if not isfinite(share):
+        return FEWEST
+    return MOST if share == 0 else min(max(floor(-log10(share)), FEWEST), MOST)
+
+
 def _kinds_that_do_work(scene: Scene) -> list[str]:
     """Return the kinds of effects that change the total energy."""
     present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
     return [kind for kind in KINDS if kind in present]
-
-
-def _residual(solution: Solution) -> float | None:
-    """Return the largest residual of the ledger, J."""
-    if not solution._run.arguments["ledger"]:
-        return None
-    ledger = solution.energy().ledger
-    return None if ledger is None else float(np.abs(ledger.residual).max(initial=0.0))
 
 
 def _lowest_potential(scene: Scene) -> float:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from math import isfinite
 from textwrap import wrap
 from typing import Any, NamedTuple
 
-from pendcore._explanation.equilibria import Equilibrium, Mode
-from pendcore._explanation.not_modelled import Absence
-from pendcore._messages.html import beside, table
-from pendcore._scene.drives import changes_with_time
-from pendcore._scene.scene import Mobility, Scene
+from pendcore import Mobility, Scene, effects
+from pendcore.explanation.equilibria import Equilibrium, Mode
+from pendcore.messages import beside, table
 
 STEPS_A_PERIOD = 500
 """The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
@@ -40,6 +38,24 @@ class Cost(NamedTuple):
     nanoseconds: float
 
 
+class Absence(NamedTuple):
+    """Something that is not simulated.
+
+    Attributes
+    ----------
+    kind : str
+        The kind of an effect that the scene could have, or a word for physics without an effect.
+    sentence : str
+        What would be simulated.
+    available : bool
+        Whether there is such an effect.
+    """
+
+    kind: str
+    sentence: str
+    available: bool
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
     """What `Scene.explain` finds. It prints as a table.
@@ -57,6 +73,8 @@ class Explanation:
     constraint_rank : int or None
         Rank of the constraint Jacobian of the hinges and locks, on 3 coordinates a link; None
         where the links are too many.
+    degrees_of_freedom : int or None
+        Coordinates less constraints, ``3 n - rank``; None where the rank is None.
     equilibria : tuple of Equilibrium
         Hanging, upright and the start, where they are in balance, or what Newton's method finds
         from there; each with its natural frequencies. Dry friction is left out.
@@ -89,6 +107,7 @@ class Explanation:
     costs: tuple[Cost, ...]
     mobility: Mobility
     constraint_rank: int | None
+    degrees_of_freedom: int | None
     equilibria: tuple[Equilibrium, ...]
     stiffest_rate: float | None
     fastest_drive: float
@@ -97,53 +116,26 @@ class Explanation:
     lanes: tuple[str, ...]
     remarks: tuple[str, ...]
 
-    @property
-    def degrees_of_freedom(self) -> int | None:
-        """Coordinates less constraints, ``3 n - rank``; None where the rank is None."""
-        rank = self.constraint_rank
-        return None if rank is None else 3 * len(self.scene.links) - rank
-
     def to_dict(self) -> dict[str, Any]:
         """Return the same as JSON can hold it; None where there is no number."""
         told = {
             "links": [asdict(link) for link in self.scene.links],
             "gravity": self.scene.gravity,
             "effects": [repr(effect) for effect in self.scene.effects],
-            "t": self.t,
-            "costs": [cost._asdict() for cost in self.costs],
-            "mobility": self.mobility._asdict(),
-            "constraint_rank": self.constraint_rank,
-            "degrees_of_freedom": self.degrees_of_freedom,
-            "equilibria": [
-                found._asdict() | {"modes": [mode._asdict() for mode in found.modes]}
-                for found in self.equilibria
-            ],
-            "stiffest_rate": self.stiffest_rate,
-            "fastest_drive": self.fastest_drive,
-            "first_step": self.first_step,
-            "not_simulated": [absence._asdict() for absence in self.not_simulated],
-            "lanes": self.lanes,
-            "remarks": self.remarks,
         }
-        plain: dict[str, Any] = _plain(told)
+        own = (one.name for one in fields(self) if one.name != "scene")
+        plain: dict[str, Any] = _plain(told | {name: getattr(self, name) for name in own})
         return plain
 
     def _repr_html_(self) -> str:
         costs = [
-            [one.what, "" if one.operations is None else str(one.operations),
-             f"{one.nanoseconds:.0f}"]
-            for one in self.costs
-        ]  # fmt: skip
-        found = [
-            [
-                one.name,
-                one.stability,
-                ", ".join(
-                    f"{x.angular_frequency:.4g}" for x in one.modes if x.angular_frequency > 0
-                ),
-            ]
-            for one in self.equilibria
+            [what, "" if operations is None else str(operations), f"{nanoseconds:.0f}"]
+            for what, operations, nanoseconds in self.costs
         ]
+        found = []
+        for one in self.equilibria:
+            shown = [x.angular_frequency for x in one.modes if x.angular_frequency > 0]
+            found.append([one.name, one.stability, ", ".join(f"{x:.4g}" for x in shown)])
         return beside(
             table(costs, ("simulated", "operations", "ns")),
             table(found, ("equilibrium", "", "frequencies (rad/s)")),
@@ -157,12 +149,14 @@ class Explanation:
 def _text(told: Explanation) -> str:
     """Return an explanation as a table."""
     n, at = len(told.scene.links), f"t = {told.t:.6g} s"
+    is_frozen = told.equilibria and changes_with_time(told.scene)
+    frozen = f", with all drives held as they are at {at}" if is_frozen else ""
     head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, explained at {at}"
     blocks = [
         [head],
         ["What is simulated, and what it costs in a right-hand side", *_costs(told)],
         ["Freedom", *_freedom(told)],
-        ["Equilibria" + _frozen(told), *_equilibria(told)],
+        [f"Equilibria{frozen}", *_equilibria(told)],
         ["How fast", *_rates(told)],
         ["What is not simulated", *_absences(told)],
         ["Many at once", *_bullet(_of_lanes(told.lanes))],
@@ -172,8 +166,16 @@ def _text(told: Explanation) -> str:
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
+def changes_with_time(scene: Scene) -> bool:
+    """Return whether an effect has a table, a spline or a sinusoid."""
+    parts = (part for effect in scene.effects for part in effect.parts().values())
+    return any(isinstance(x, effects.Sinusoid | effects.Table | effects.Spline) for x in parts)
+
+
 def _plain(value: Any) -> Any:
     """JSON knows no tuples, and neither infinities nor NaN."""
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
     if isinstance(value, dict):
         return {key: _plain(x) for key, x in value.items()}
     if isinstance(value, list | tuple):
@@ -196,15 +198,8 @@ def _freedom(told: Explanation) -> Iterator[str]:
     n, c5, c4, freedom = told.mobility
     yield f"  the textbook's count       M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
     if told.constraint_rank is not None:
-        whole = 3 * len(told.scene.links)
-        found = f"{whole} - {told.constraint_rank} = {told.degrees_of_freedom}"
+        found = f"{3 * len(told.scene.links)} - {told.constraint_rank} = {told.degrees_of_freedom}"
         yield f"  the constraints' Jacobian  3 n - rank = {found}"
-
-
-def _frozen(told: Explanation) -> str:
-    """Where something changes with time, the heading says that here it does not."""
-    held = told.equilibria and changes_with_time(told.scene)
-    return f", with all drives held as they are at t = {told.t:.6g} s" if held else ""
 
 
 def _equilibria(told: Explanation) -> Iterator[str]:

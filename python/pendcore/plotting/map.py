@@ -7,16 +7,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import _core
-from pendcore._ensemble.ensemble import Ensemble
-from pendcore._figures.axes import NewFigure, as_drawn, figure_of_pyplot
-from pendcore._messages.arguments import Floats
+from pendcore import Ensemble
+from pendcore.plotting.axes import NewFigure, figure_of_pyplot
+from pendcore.plotting.curve import Floats
+from pendcore.plotting.style import RESOLVED, UNRESOLVED, as_drawn
 from pendcore.reducers import EnergyDrift, FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
-UNRESOLVED = "0.75"
-"""The grey of what is not resolved."""
 
 Mask = npt.NDArray[np.bool_]
 
@@ -100,19 +98,17 @@ def is_wide(values: Floats) -> bool:
 def axis_of(found: Ensemble, k: int) -> Axis:
     """Return an axis of the members: the first start or parameter that changes along it alone."""
     members = found.members
-    n = len(members.scene.links)
-    given = dict(members.vary)
-    given |= {f"q0[{i + 1}]": members.q0[..., i] for i in range(n)}
-    given |= {f"qd0[{i + 1}]": members.qd0[..., i] for i in range(n)}
-    units = {name: unit for name, unit, _ in _core.parameters(members.scene._compiled)}
-    units |= {name: "rad/s" if name.startswith("qd0") else "rad" for name in given if "0[" in name}
+    units, given = members.scene.parameter_units(), dict(members.vary)
+    for name, starts, unit in (("q0", members.q0, "rad"), ("qd0", members.qd0, "rad/s")):
+        for i in range(starts.shape[-1]):
+            given[f"{name}[{i + 1}]"], units[f"{name}[{i + 1}]"] = starts[..., i], unit
     for name, values in given.items():
         along = np.moveaxis(values, k, 0).reshape(values.shape[k], -1)
         first = along[:, 0] if along.size else along.ravel()
         steps = np.diff(first)
         is_monotone = len(first) > 1 and ((steps > 0).all() or (steps < 0).all())
         if is_monotone and (along == first[:, None]).all():
-            unit = units.get(name, "")
+            unit = units[name]
             return Axis(f"{name} ({unit})" if unit else name, np.asarray(first))
     return Axis(f"member along axis {k}", np.arange(found.shape[k], dtype=float))
 
@@ -137,7 +133,7 @@ def draw_map(
     if mask is None or len(axes) == 1:
         return [image]
     trust = axes[1].pcolormesh(
-        x.values, y.values, mask.T.astype(float), cmap=ListedColormap([UNRESOLVED, "tab:green"]),
+        x.values, y.values, mask.T.astype(float), cmap=ListedColormap([UNRESOLVED, RESOLVED]),
         vmin=0, vmax=1, shading="nearest", rasterized=True,
     )  # fmt: skip
     bar = axes[1].figure.colorbar(trust, ax=axes[1], ticks=[0.25, 0.75])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, Any
 
-from pendcore._cases.case import Case, has_own_functions
 from pendcore._run.solution import Solution
 
 if TYPE_CHECKING:
@@ -16,16 +15,7 @@ _HINT = "needs {0}: pip install {0}"
 
 
 def to_pandas(solution: Solution) -> pd.DataFrame:
-    """Return a row per time, index ``time`` (s), columns q_1.. (rad) and qd_1.. (rad/s).
-
-    ``attrs`` holds ``units``, by column, and ``case``, the TOML of what was simulated, unless an
-    effect or an event is a function.
-
-    Raises
-    ------
-    ImportError
-        If pandas is not installed.
-    """
+    """See `Solution.to_pandas`."""
     try:
         import pandas as pd
     except ImportError:
@@ -41,16 +31,7 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
 
 
 def to_xarray(solution: Solution) -> xr.Dataset:
-    """Return ``q`` and ``qd`` over ``time`` and ``link``, each with ``attrs["units"]``.
-
-    The set's ``attrs["case"]`` is the TOML of what was simulated, unless an effect or an event is
-    a function.
-
-    Raises
-    ------
-    ImportError
-        If xarray is not installed.
-    """
+    """See `Solution.to_xarray`."""
     try:
         import xarray as xr
     except ImportError:
@@ -70,6 +51,4 @@ def to_xarray(solution: Solution) -> xr.Dataset:
 
 def _case(solution: Solution) -> dict[Hashable, Any]:
     """Return the case as TOML, or nothing if an effect or an event is a function."""
-    if has_own_functions(solution):
-        return {}
-    return {"case": Case.of_solution(solution).to_toml()}
+    return {} if solution.has_own_functions else {"case": solution.case().to_toml()}

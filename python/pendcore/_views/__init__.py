@@ -1,1 +1,0 @@
-"""What can be made of a solution: figures, tables, summaries, other libraries' objects."""

@@ -1,0 +1,1 @@
+"""What scenes and runs say of themselves: `scene.explain()` and `print(sol)`."""

@@ -1,1 +1,0 @@
-"""Runs that move: frames, matplotlib's animation, video files."""

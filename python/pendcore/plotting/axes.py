@@ -1,0 +1,106 @@
+"""What is asked of a figure, and the axes on which it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from pendcore import Solution
+from pendcore.plotting.style import SHADE
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+NewFigure: TypeAlias = Callable[..., "Figure"]
+"""Makes a new figure: pyplot's, or one of its own."""
+
+
+def figure_of_pyplot(*args: Any, **named: Any) -> Figure:
+    """Return a new figure that pyplot shows when it is asked to."""
+    import matplotlib.pyplot as plt
+
+    return plt.figure(*args, **named)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What is asked of a figure; `pendcore.Solution.plot` says what ``ax`` to ``link`` mean.
+
+    Attributes
+    ----------
+    new_figure : callable
+        Makes the figure where no axes are given.
+    valid_until : float or None
+        s; what lies past it is shaded or pale.
+    properties : dict
+        Those of the lines.
+    """
+
+    solution: Solution
+    ax: Any = None
+    label: str | None = None
+    t: npt.ArrayLike | None = None
+    event: int | None = None
+    link: int | None = None
+    new_figure: NewFigure = figure_of_pyplot
+    valid_until: float | None = None
+    properties: dict[str, Any] = field(default_factory=dict)
+
+    def one_axes(self, size: tuple[float, float]) -> Axes:
+        """Return the axes that were given, or those of a new figure of a size, inches."""
+        if self.ax is None:
+            return self.new_figure(figsize=size, layout="constrained").subplots()
+        return _checked(self.ax, (1,), "")[0]
+
+    def stacked_axes(self, counts: Sequence[int], which: str) -> list[Axes]:
+        """Return the axes that were given, or the most of ``counts`` in a new figure."""
+        ax, rows = self.ax, max(counts)
+        if ax is None:
+            figure = self.new_figure(figsize=(6.4, max(4.8, 1.8 * rows)), layout="constrained")
+            ax = figure.subplots(rows, 1, squeeze=False)
+        return _checked(ax, counts, which)
+
+    def name_of(self, curve: str) -> str:
+        """Return what the legend calls a curve: with the solution's label, if that has one."""
+        return curve if self.label is None else f"{curve}, {self.label}"
+
+    def shade(self, axes: Sequence[Axes]) -> None:
+        """Shade the times past which nothing is right."""
+        end = self.solution.t_reached
+        if self.valid_until not in (None, end):
+            for axis in axes:
+                axis.axvspan(self.valid_until, end, **SHADE)
+
+
+def _checked(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
+    """Return the given axes as a list; TypeError or ValueError unless they are one of `counts`."""
+    from matplotlib.axes import Axes
+
+    axes = list(np.ravel(ax))
+    told = ", or ".join(dict.fromkeys("one" if k == 1 else f"{k}, {which}" for k in counts))
+    if not all(isinstance(axis, Axes) for axis in axes):
+        remedy = "; a figure is chosen by what=" if isinstance(ax, str) else ""
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}{remedy}")
+    if len(axes) not in counts:
+        raise ValueError(f"ax: {len(axes)} axes: must be {told}")
+    return axes
+
+
+def in_plane(axis: Axes) -> None:
+    """Let the axes show the plane as the project has it: to scale, with y downwards."""
+    axis.set_aspect("equal", adjustable="datalim")
+    if not axis.yaxis_inverted():
+        axis.invert_yaxis()
+    axis.set_xlabel("x (m)")
+    axis.set_ylabel("y (m), downwards")
+    axis.grid(True, alpha=0.4)
+
+
+def point_style(t: npt.NDArray[np.float64]) -> str:
+    """Return how points are marked: a single one can be seen, those of a curve cannot."""
+    return "." if len(t) == 1 else ""
