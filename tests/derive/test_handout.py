@@ -7,13 +7,13 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import handed_out_cases as given
 import pendcore as pc
 import pytest
-from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN, asked, drawn, reported, solved
+from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
 from pendcore.derive import Derivation, line_breaks
 from pendcore.derive.document import Blank, Displayed, Document, Reader, Table
 from pendcore.derive.report import conversion, motion
-from pendcore.derive.report.numbers import Start
 from pendcore.derive.report.quantities import number
 from symbolic_scenes import derivation
 
@@ -29,7 +29,7 @@ fx = pc.effects
 @pytest.fixture(scope="module", params=CASES)
 def handed_out(request: pytest.FixtureRequest) -> tuple[pc.Case, Derivation, Document, Document]:
     case = CASES[request.param]
-    return case, derivation(case.scene), reported(case), asked(case)
+    return case, derivation(case.scene), given.reported(case), given.asked(case)
 
 
 def displayed(document: Document) -> list[Displayed]:
@@ -56,7 +56,7 @@ def test_every_step_of_the_derivation_is_in_it_and_fits_its_lines(handed_out: An
 
 
 def test_the_textbooks_report_has_its_numbers_and_units() -> None:
-    text = reported(CASES["textbook"]).markdown()
+    text = given.reported(CASES["textbook"]).markdown()
     assert re.findall(r"\\tag{(.*?)}", text) == [f"2.{k}" for k in range(1, 12)]
     for told in (
         r"q_{1}(0) &= 0.785398\;\text{rad} = 45^\circ",
@@ -90,7 +90,7 @@ def test_every_symbol_of_f_has_its_numbers_where_f_has_them(effect: Any, told: l
     effects = [effect, fx.Payload(mass=0.5, inertia=0.01)]
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * 2, effects=effects)
     case, derived = pc.Case(scene=scene, q0=(0.3, 0.4), t_span=(0, 2)), derivation(scene)
-    text = reported(case).markdown()
+    text = given.reported(case).markdown()
     text = text.split("### The equations of motion with numbers\n")[1].split("\n##")[0]
     for words in told:
         assert words in text, text
@@ -102,7 +102,7 @@ def test_every_symbol_of_f_has_its_numbers_where_f_has_them(effect: Any, told: l
 
 def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out: Any) -> None:
     case, derived, *_ = handed_out
-    rows = Start(derived, case).rows()
+    rows = given.at_start(case)
     assert len(rows) == 3 * derived.n + len(derived.equations.locked) + 2
     scale = max(abs(core) for *_, core in rows)
     for name, _, own, core in rows:
@@ -112,7 +112,7 @@ def test_what_the_derivation_says_of_the_start_is_what_the_core_says(handed_out:
 def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
     """A joint's couple acts on the link that begins there, and reversed on the link before."""
     case, derived, *_ = handed_out
-    sheets = drawn("free_bodies", case.scene, case.q0).axes
+    sheets = given.drawn("free_bodies", case.scene, case.q0).axes
     shown = [text.get_text() for axes in sheets for text in axes.texts]
     for joint in range(1, derived.n + 1):
         couple = derived.equations.joint_couple(joint)
@@ -123,22 +123,22 @@ def test_free_bodies_have_the_couples_of_the_equations(handed_out: Any) -> None:
 
 def test_curves_are_of_the_forces_that_the_derivation_names(handed_out: Any) -> None:
     case, derived, *_ = handed_out
-    curves = motion.reactions(derived, solved(case)).figure.axes
-    rows = {name: own for name, _, own, _ in Start(derived, case).rows()}
+    curves = motion.reactions(derived, given.solved(case)).figure.axes
+    rows = {name: own for name, _, own, _ in given.at_start(case)}
     for axis, names in zip(curves, derived.equations.forces, strict=True):
         assert axis.get_ylabel().endswith("(N)")
         for line, name in zip(axis.lines, names, strict=False):
-            at_start = rows[derived.symbols.latex(name)]
-            assert line.get_ydata()[0] == pytest.approx(at_start, rel=1e-12, abs=1e-12)
+            begins = rows[derived.symbols.latex(name)]
+            assert line.get_ydata()[0] == pytest.approx(begins, rel=1e-12, abs=1e-12)
     assert curves[-1].get_xlabel() == "t (s)"
 
 
 def test_a_worksheet_gives_nothing_away(handed_out: Any) -> None:
-    case, derived, whole, blank = handed_out
+    case, _, whole, blank = handed_out
     text = blank.markdown()
     works = any(effect.description.account != "none" for effect in case.scene.effects)
     assert ("keep the balance" in text) is works
-    for name, _, own, _ in Start(derived, case).rows():
+    for name, _, own, _ in given.at_start(case):
         if own and name not in ("T", "V"):
             assert f"${number(own)}$" in whole.markdown()
             assert f"${number(own)}$" not in text
@@ -179,7 +179,7 @@ def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -
 )
 @pytest.mark.every_value("words")
 def test_a_worksheet_states_what_acts_and_what_its_symbols_are(case: pc.Case, words: str) -> None:
-    text = asked(case).markdown().partition("## Derivation")[0]
+    text = given.asked(case).markdown().partition("## Derivation")[0]
     assert words in text
     assert r"\varepsilon" not in text
 
@@ -239,13 +239,13 @@ def test_the_page_needs_no_other_file_and_no_network(handed_out: Any, tmp_path: 
 def test_the_pdf_is_made(name: str, tmp_path: Path) -> None:
     engine = conversion.latex_engine()
     assert engine is not None
-    conversion.pdf(reported(CASES[name]), engine, tmp_path / "report.pdf")
+    conversion.pdf(given.reported(CASES[name]), engine, tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_every_reader_has_the_figures_and_no_table_is_parted_by_the_end_of_a_page() -> None:
     """Room for a table is asked for before it, or before the paragraph that leads to it."""
-    document = reported(LEVEL)
+    document = given.reported(LEVEL)
     for reader, suffix in ((Reader.PEOPLE, "png"), (Reader.HTML, "svg"), (Reader.PDF, "pdf")):
         found = re.findall(r"!\[.*?\]\((\w+)\.(\w+)\)", document.markdown(reader))
         assert found == [(drawing.name, suffix) for drawing in document.drawings]

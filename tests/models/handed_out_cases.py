@@ -10,6 +10,7 @@ import pendcore as pc
 from pendcore.derive.document import Document
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import bodies, motion, report, worksheet
+from pendcore.derive.report.numbers import Start
 from symbolic_scenes import derivation
 
 effects = pc.effects
@@ -79,6 +80,12 @@ def reported(case: pc.Case) -> Document:
 def asked(case: pc.Case) -> Document:
     """The worksheet of a case."""
     return worksheet(derivation(case.scene), case, solved(case))
+
+
+@cache
+def at_start(case: pc.Case) -> list[tuple[str, str, float, float]]:
+    """The rows of the report's table of the start: name, unit, what is derived, the core's."""
+    return Start(derivation(case.scene), case).rows()
 
 
 def drawn(what: str, scene: pc.Scene, q: Any) -> Any:
