@@ -95,14 +95,17 @@ def test_the_corners_of_the_ratios_also_straight_and_folded(mass, length, q) -> 
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 20])
-@settings(max_examples=20, deadline=None)
-@given(data=st.data())
-def test_the_mass_matrix_is_that_of_the_kinetic_energy(n: int, data: st.DataObject) -> None:
-    bodies, (q, _) = data.draw(uneven_links(n)), data.draw(states(n))
-    rig = Rig(bodies=bodies, gravity=0.0, arithmetic=SIXTY)
-    exact = np.array(rig.mass_matrix(q), dtype=float)
-    size = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
-    assert np.all(np.abs(scene_of(bodies, 9.81).mass_matrix(q) - exact) < 1e-14 * size)
+def test_the_mass_matrix_is_that_of_the_kinetic_energy(n: int) -> None:
+    @settings(max_examples=20 if n <= 10 else 3, deadline=None)
+    @given(uneven_links(n), states(n))
+    def check(bodies, state) -> None:
+        rig = Rig(bodies=bodies, gravity=0.0, arithmetic=SIXTY)
+        exact = np.array(rig.mass_matrix(state[0]), dtype=float)
+        size = np.sqrt(np.outer(np.diag(exact), np.diag(exact)))
+        found = scene_of(bodies, 9.81).mass_matrix(state[0])
+        assert np.all(np.abs(found - exact) < 1e-14 * size)
+
+    check()
 
 
 def test_many_states_at_once() -> None:

@@ -89,6 +89,6 @@ def test_a_limit_that_passes_while_an_executor_works_ends_the_whole():
     how = {"chunk": 1, "time_limit": 0.05, "on_failure": "ignore"}
     with ThreadPoolExecutor(1) as pool:
         starts_of_many = [[0.1 * k, 0.2] for k in range(50)]
-        found = pc.ensemble(BOOK, (0, 3000), starts_of_many, executor=pool, **how)
+        found = pc.ensemble(BOOK, (0, 300), starts_of_many, executor=pool, **how)
     assert found.ending == "time_limit"
     assert found.counts()["not_run"] > 0
