@@ -97,6 +97,8 @@ def test_every_method_is_there_at_every_tolerance(book):
         assert [p.rtol for p in book if p.method == method] == [10.0**-k for k in range(2, 15)]
     steps = [p.step for p in book if p.method == "rk4"]
     assert np.allclose(np.divide(steps[:-1], steps[1:]), 2)
+    loose = pc.simulate(BOOK, *START, method="dopri5", rtol=1e-3, atol=1e-6).stats.accepted
+    assert steps[0] == pytest.approx(5 / math.ceil(loose / 2))  # twice as long as a loose run's
     assert all(p.repeats == 3 and 0 < p.seconds <= p.median < 1 for p in book)
 
 

@@ -75,6 +75,7 @@ def test_its_figure_has_a_line_a_method_over_digits_and_over_time(work: pc.Horiz
     assert len(by_digits.lines) == len(work.methods) + 1  # and what the exponent predicts
     assert len(by_cost.lines) == len(work.methods)
     assert "rad" in by_digits.get_xlabel()
+    assert by_digits.get_ylabel() == f"time until an angle is off by {work.limit:g} rad (s)"
     assert "s" in by_cost.get_xlabel()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -241,6 +242,25 @@ def test_the_pdf_is_made(name: str, tmp_path: Path) -> None:
     assert engine is not None
     conversion.pdf(given.reported(CASES[name]), engine, tmp_path / "report.pdf")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_a_pdf_is_made_with_the_preamble_and_the_figures(tmp_path, monkeypatch) -> None:
+    """What pandoc is told, where there is no LaTeX."""
+    made = []
+
+    def pandoc(command: list[str], *, cwd: Path, **how: Any) -> subprocess.CompletedProcess[str]:
+        options = dict(word.removeprefix("--").split("=", 1) for word in command if "=" in word)
+        made.append((Path(options["include-in-header"]).read_text(), options["pdf-engine"]))
+        made.append({path.name for path in cwd.glob("*.pdf")})
+        Path(options["output"]).write_bytes(b"%PDF")
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(subprocess, "run", pandoc)
+    document = given.reported(LEVEL)
+    conversion.pdf(document, "lualatex", tmp_path / "report.pdf")
+    assert (tmp_path / "report.pdf").read_bytes() == b"%PDF"
+    assert made[0] == (conversion.PREAMBLE, "lualatex")
+    assert made[1] == {f"{drawing.name}.pdf" for drawing in document.drawings} != set()
 
 
 def test_every_reader_has_the_figures_and_no_table_is_parted_by_the_end_of_a_page() -> None:

@@ -12,7 +12,7 @@ from handed_out_cases import CASES, drawn
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
 from pendcore.derive.report import drawing
-from pendcore.derive.report.motion import whole_ticks
+from pendcore.derive.report.motion import empty_axes, whole_ticks
 
 pytestmark = pytest.mark.unsanitized
 
@@ -48,6 +48,17 @@ def test_arrows_point_the_way_that_counts_as_positive(
             expected |= {f"$F_{{{far}x}}$": [1.0, 0.0], f"$F_{{{far}y}}$": [0.0, 1.0]}
         assert dict(arrows) == expected
     assert len(sheets) == n
+
+
+def test_free_bodies_have_names_and_the_couple_that_turns_a_payload() -> None:
+    payload = effects.Payload(mass=0.2, inertia=0.01)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * 2, effects=[payload])
+    figure = drawn("free_bodies", scene, [0.5, 0.7])
+    names = [{text.get_text() for text in axes.texts} for axes in figure.axes]
+    couple = r"$I_{p} \ddot{q}_{2}$"
+    assert couple not in names[0]
+    assert names[1] >= {"link 2", "$C_{2}$", "$B$", "$D$", "$F_{p2x}$", "$F_{p2y}$", couple}
+    assert names[2] >= {"payload", "$D$", "$m_{p} g$", "$F_{p2x}$", "$F_{p2y}$", couple}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -93,6 +104,13 @@ def test_names_in_figures_lie_on_nothing(seed: int) -> None:
                 rod = MarkedPath(axes.transData.transform(np.array(ends)))
                 for text, box in zip(filter(Text.get_text, axes.texts), boxes, strict=True):
                     assert not rod.intersects_bbox(box, filled=False), text
+
+
+def test_empty_axes_name_each_angle_and_span_the_run() -> None:
+    figure = empty_axes(pc.simulate(pc.Scene.textbook(), (0.5, 2.0), [0.1, 0.2])).figure
+    assert [axes.get_ylabel() for axes in figure.axes] == ["q1 (deg)", "q2 (deg)"]
+    assert [axes.get_xlim() for axes in figure.axes] == [(0.5, 2.0)] * 2
+    assert not any(axes.lines for axes in figure.axes)
 
 
 def test_empty_axes_have_few_ticks_at_whole_angles() -> None:

@@ -227,6 +227,16 @@ except OSError as error:
     assert found.counts() == {"finished": 64}
 
 
+def test_progress_rises_to_1_within_blocks_and_from_one_to_the_next(tmp_path):
+    fractions = []
+    starts = pc.sampling.uniform(-2, 2, (6, 2), seed=1)
+    how = {"t_span": (0, 20_000), "chunk": 2, "progress": fractions.append, "workers": 1}
+    pc.ensemble(BOOK, q0=starts, store=tmp_path / "a.zarr", **how)
+    assert fractions == sorted(fractions)
+    assert {1 / 3, 1 / 2, 2 / 3} < {*fractions}  # one half is within the second of three blocks
+    assert fractions[-1] == 1
+
+
 @pytest.mark.unsanitized
 def test_memory_is_that_of_the_result():
     """A million members of one start, which broadcast: 41 MB of results."""
