@@ -196,7 +196,7 @@ TEST_CASE("a rate that is not a number is never accepted") {
     CHECK(from_one.t <= 1.0);
     CHECK(from_one.t == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(from_one.y == doctest::Approx(2.0).epsilon(1e-9));
-    CHECK(from_one.message.find(", qd_1, by effect 1 (compiled_user)") != std::string::npos);
+    CHECK(from_one.message.find(", qd_1, by effect 1 (user)") != std::string::npos);
     const Result infinite = solve(method, infinite_from_one, {.t_end = 2.0});
     CHECK(infinite.status == Status::non_finite);
     CHECK(infinite.t == doctest::Approx(1.0).epsilon(1e-9));

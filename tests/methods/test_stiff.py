@@ -194,7 +194,7 @@ def test_a_law_of_the_users_that_jumps_is_told_what_has_the_jump():
 
 def test_functions_of_the_users_are_said_to_be_differentiated_by_differences():
     sol = run([fx.User(lambda t, q, qd: -0.1 * qd)], 0.1, method="radau5")
-    assert "derivatives of effect 1 (compiled_user) by differences" in sol.message
+    assert "derivatives of effect 1 (user) by differences" in sol.message
 
 
 # Pairs ------------------------------------------------------------------------------------------

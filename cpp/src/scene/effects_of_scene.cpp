@@ -8,7 +8,10 @@
 namespace pendcore {
 
 std::string effect_name(const Scene& scene, std::size_t i) {
-  return "effect " + std::to_string(i + 1) + " (" + std::string(scene.effects[i].info().kind) + ")";
+  const EffectInfo& info = scene.effects[i].info();
+  // Whether a function is Python's or compiled, the core does not know: both are the user's.
+  const std::string_view kind = info.is_function ? account_name(info.account) : info.kind;
+  return "effect " + std::to_string(i + 1) + " (" + std::string(kind) + ")";
 }
 
 PivotMotion pivot_motion(const Scene& scene, double t) {

@@ -81,8 +81,10 @@ NotFinite find_what_is_not_finite(const Scene& scene, const IntegratorState& int
   for (const double share : {0.0, 1.0, 4.0, 16.0, 64.0, 256.0}) {
     const double h = share * integrator.h;
     if ((integrator.t.high + h - t_end) * h > 0.0) break;
-    std::vector<double> y(2 * n);
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = integrator.y[i] + h * integrator.dydt[i];
+    std::vector<double> y(integrator.y.begin(), integrator.y.begin() + 2 * n);
+    if (h != 0.0) {  // a rate that is not finite spoils no state yet
+      for (std::size_t i = 0; i < y.size(); ++i) y[i] += h * integrator.dydt[i];
+    }
     try {
       const NotFinite found = not_finite_at(scene, integrator.t.high + h, y);
       if (found.component >= 0) return found;
