@@ -59,8 +59,11 @@ def _toml(value: object) -> str:
 def written() -> dict[Path, str]:
     """Return every file and its text."""
     page, module = ROOT / "docs/how_to/case_files.md", ROOT / "python/pendcore/options.py"
+    text, replaced = KEYWORDS.subn(keywords(), module.read_text())
+    if replaced != 1:
+        raise ValueError(f"{module}: has {replaced} classes of keywords: must have one")
     return {
-        module: KEYWORDS.sub(keywords(), module.read_text()),
+        module: text,
         page: with_part(page.read_text(), "options", table()),
     }
 

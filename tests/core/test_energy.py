@@ -56,11 +56,15 @@ def test_a_ledger_cannot_be_changed_names_what_it_has_and_comes_back_from_pickle
         ledger["drag"]
     with pytest.raises(AttributeError):
         ledger.viscous = 0
+    with pytest.raises(TypeError):
+        ledger["viscous"] = 0
     for name in ledger:
         with pytest.raises(ValueError, match="read-only"):
             ledger[name][0] = 1.0
     assert are_same(ledger, pickle.loads(pickle.dumps(ledger)))
     assert are_same(ledger, copy.deepcopy(ledger))
+    assert ledger == ledger != copy.deepcopy(ledger)
+    assert len({ledger}) == 1
 
 
 def test_a_ledger_changes_no_bit_of_the_motion_and_no_shape(sol):

@@ -185,6 +185,23 @@ def test_progress_goes_up_to_the_end(monkeypatch):
     assert told[-1] == 1.0
 
 
+class Told(list):
+    """A list that is called: it is false until it has heard of anything."""
+
+    __call__ = list.append
+
+
+def test_progress_is_told_to_what_is_false_as_well(tmp_path):
+    solution = pc.simulate(TWO, q0=[1, 2], t_span=(0, 5))
+    for call in (solution.largest_reactions, solution.defect):
+        told = Told()
+        call(progress=told)
+        assert told[-1] == 1.0
+    told = Told()
+    solution.save(tmp_path / "run.npz", progress=told)
+    assert told[-1] == 1.0
+
+
 # The drift of the energy -----------------------------------------------------------------------
 
 SAID = "too large to trust this run: tighten rtol and atol (or the step)"

@@ -32,6 +32,15 @@ def test_a_link_is_a_uniform_rod_unless_said_otherwise():
 
 
 ODD = Link(mass=1, length=1, center=0.4, inertia=0.01)
+
+
+class Rods(Scene):
+    """Scenes that are made of a number of rods."""
+
+    def __init__(self, number):
+        super().__init__(links=[ROD] * number)
+
+
 REPLACED = [
     (ROD.replace(mass=2), Link(mass=2, length=1)),
     (ROD.replace(length=3), Link(mass=1, length=3)),
@@ -41,6 +50,7 @@ REPLACED = [
     (BOOK.replace(gravity=0).replace(links=[ODD]), Scene(links=[ODD], gravity=0)),
     (copy.deepcopy(BOOK), BOOK),
     (copy.copy(BOOK), BOOK),
+    (copy.deepcopy(Rods(3)), Rods(3)),
 ]
 
 

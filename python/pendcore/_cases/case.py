@@ -196,19 +196,11 @@ class Case:
         return partial(type(self), **self._values()), ()
 
 
-def has_own_functions(solution: Solution) -> bool:
-    """Whether an effect or an event is a function, which no file can hold."""
-    return bool(_own_functions(solution.scene, solution.events_asked_for()))
-
-
 def refuse_functions(scene: Scene, events: Iterable[Event], done: str, remedy: str = "") -> None:
     """Raise a TypeError for an effect or an event that is a function: it cannot be ``done``."""
-    for one in _own_functions(scene, events):
-        raise one.cannot_be(done, remedy)
-
-
-def _own_functions(scene: Scene, events: Iterable[Event]) -> list[OwnEffect | Function]:
-    return [one for one in (*scene.effects, *events) if isinstance(one, OwnEffect | Function)]
+    for one in (*scene.effects, *events):
+        if isinstance(one, OwnEffect | Function):
+            raise one.cannot_be(done, remedy)
 
 
 def _plain(value: Any) -> Any:

@@ -24,7 +24,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import Arrays, Outcome, run_members
 from pendcore._ensemble.store import Store, write_block
 
-Report = Callable[[float], object] | None
+Report = Callable[[float], object]
 Result = tuple[Block, Arrays | None, dict[str, Any]]
 """A block, its arrays unless they are in a store, and its statistics."""
 
@@ -73,8 +73,7 @@ def run_blocks(
     def is_run(block: Block) -> None:
         nonlocal done
         done += size_of(block)
-        if report is not None:
-            report(done / total)
+        report(done / total)
 
     def left() -> Iterator[Block]:
         for block in blocks:
@@ -221,6 +220,4 @@ def _in_words(error: BaseException) -> BaseException:
 
 def _part(report: Report, begin: float, share: float) -> Report:
     """Return a report for a part of the whole."""
-    if report is None:
-        return None
     return lambda fraction: report(begin + share * fraction)

@@ -134,17 +134,15 @@ def _write(
     path: Path, place: Path, opened: Callable[[], dict[str, Any]], block: Block, arrays: Arrays
 ) -> None:
     """See that a store is there before and after it is written: Zarr would make folders anew."""
+    if not is_there(place):
+        raise moved(path)
     files: list[str] = []
     try:
-        if not is_there(place):
-            raise moved(path)
         with named(path):
             zarr_arrays = opened()
             files = _files(zarr_arrays, block)
             for name in reversed(zarr_arrays):  # the status is the first, and is written last
                 zarr_arrays[name][block] = arrays[name]
-        if not is_there(place):
-            raise moved(path)
     except Exception as error:
         if is_there(place) and not isinstance(error, FileNotFoundError):
             raise
@@ -152,6 +150,8 @@ def _write(
     finally:
         if not is_there(place):
             _take_back(place, files)
+    if not is_there(place):
+        raise moved(path)
 
 
 def _take_back(place: Path, files: list[str]) -> None:

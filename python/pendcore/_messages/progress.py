@@ -82,6 +82,10 @@ def close(report: Callable[[float], object] | None) -> None:
         report.close()
 
 
+def _unheard(fraction: float) -> None:
+    """Take what nobody wants to know."""
+
+
 @contextmanager
 def reporting(
     progress: Progress, what: str, count: int = 100, unit: str = "%"
@@ -89,6 +93,6 @@ def reporting(
     """Yield what takes the fraction done, and end its bar; see `callback`."""
     report = callback(progress, what, count, unit)
     try:
-        yield report or (lambda fraction: None)
+        yield _unheard if report is None else report  # a list that is called is false while empty
     finally:
         close(report)

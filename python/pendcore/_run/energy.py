@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ LOSSES = frozenset(name for name, is_loss in _core.accounts().items() if is_loss
 """The entries that count what is lost; the others count work done on the chain."""
 
 
-class Ledger(dict[str, Floats]):
+class Ledger(Mapping[str, Floats]):
     """Work and loss since the start, J, an entry for each kind that the scene has.
 
     ``viscous``, ``dry``, ``drag`` and ``impact`` are losses, ``motor``, ``drive``, ``wind`` and
@@ -42,28 +42,43 @@ class Ledger(dict[str, Floats]):
     True
     """
 
-    __slots__ = ()
+    __slots__ = ("_entries",)
+
+    def __init__(self, entries: Mapping[str, Floats]) -> None:
+        self._entries = dict(entries)
 
     @property
     def losses(self) -> frozenset[str]:
         """The names of the entries that count what is lost."""
         return LOSSES.intersection(self)
 
-    def __getattr__(self, name: str) -> Floats:
-        if name not in self:
-            raise AttributeError(self._has_no(name))
-        return self[name]
+    def __getitem__(self, name: str) -> Floats:
+        if name not in self._entries:
+            raise KeyError(self._has_no(name))
+        return self._entries[name]
 
-    def __missing__(self, name: str) -> Floats:
-        raise KeyError(self._has_no(name))
+    def __getattr__(self, name: str) -> Floats:
+        if name not in self._entries:
+            raise AttributeError(self._has_no(name))
+        return self._entries[name]
 
     def _has_no(self, name: str) -> str:
         return f"the ledger has no entry {name!r}: it has {', '.join(self)}"
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]
 
-    __eq__ = object.__eq__  # that of a dictionary would compare arrays
+    __eq__ = object.__eq__  # that of a mapping would compare arrays
+    __hash__ = object.__hash__
+
+    def __reduce__(self) -> tuple[type[Ledger], tuple[dict[str, Floats]]]:
+        return type(self), (self._entries,)
 
     def __repr__(self) -> str:
         if not len(self.residual):
@@ -130,4 +145,4 @@ def energy_over(
         booked = (-entry if name in LOSSES else entry for name, entry in entries.items())
         residual = total - sum(start) - sum(booked, np.zeros(len(total)))
     residual.flags.writeable = False
-    return Energy(kinetic, potential, total, Ledger(entries, residual=residual))
+    return Energy(kinetic, potential, total, Ledger({**entries, "residual": residual}))

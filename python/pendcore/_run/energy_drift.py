@@ -80,7 +80,7 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
         drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
     ends = float(total[0]), float(total[-1])
     if working:
-        ledger = solution.energy().ledger
+        ledger = solution.energy().ledger if asked["ledger"] else None
         if ledger is None:
             bad = not np.isfinite(ends[1])
             return EnergyDrift(*ends, None, moving, None, bad, working, ledger=False)

@@ -536,8 +536,10 @@ class Scene:
     def _unpickled(
         cls, links: Iterable[Link], gravity: float, effects: Iterable[Effect] = ()
     ) -> Self:
+        scene = object.__new__(cls)  # a class of the user's may be made from other arguments
         with silence():  # what is implausible was said when it was first made
-            return cls(links=links, gravity=gravity, effects=effects)
+            Scene.__init__(scene, links=links, gravity=gravity, effects=effects)
+        return scene
 
     def __reduce__(self) -> tuple[object, tuple[object, ...]]:
         # The compiled scene is made anew.
