@@ -50,6 +50,17 @@ def test_a_scene_is_its_seed(family: str) -> None:
     assert repr(one) == repr(again) != repr(other)
 
 
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_scenes_of_a_family_are_of_every_kind(family: str) -> None:
+    drawn = [FAMILIES[family](seed) for seed in range(60)]
+    links = {2, 3} if family == "short_links" else {1, 2, 3, 4, 5}
+    assert {len(one.scene.links) for one in drawn} == links
+    assert {name for one in drawn for name in one.options} >= {"t_eval", "store", "events"}
+    assert any(one.t_start for one in drawn)
+    goes_back = any(one.t_end < one.t_start for one in drawn)
+    assert goes_back == (family not in ("contact", "stiff"))
+
+
 # A deliberate mistake of each sort is seen -----------------------------------------------------
 
 

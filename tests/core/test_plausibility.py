@@ -120,6 +120,13 @@ def test_what_may_well_be_meant_is_not_warned_of(effects, asked):
         assert pc.simulate(SCENE.replace(effects=effects), **asked).success
 
 
+def test_as_much_inertia_as_a_mass_may_have_and_none_at_all_are_not_warned_of():
+    with not_warned():
+        pc.Scene(links=[ROD, pc.Link(mass=1, length=1, inertia=0.25)])
+        pc.Scene(links=[ROD, pc.Link(mass=1e-3, length=10, center=0.1, inertia=0)])
+        pc.Scene(links=[ROD, pc.Link.point_mass(mass=1, length=0.1)])
+
+
 @pytest.mark.parametrize("angle", [0.0, 10.0, -10.0, 16.0, 725.0, 12.566370614359172])
 def test_angles_of_effects_that_may_well_be_meant_are_not_warned_of(angle):
     servo = fx.Motor(2, pd=fx.PD(40, 2, reference=angle))

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-# `make compare` asks for these, and `make test` alone does not; .ci/run has them.
-pytest.importorskip("numba")
-pytest.importorskip("scipy")
-
 PROJECT = Path(__file__).parents[2]
 sys.path.append(str(PROJECT / "bench" / "compare"))
+sys.path.append(str(PROJECT / "docs" / "generators"))
 
 import chains  # noqa: E402
 import compare  # noqa: E402
@@ -29,10 +27,15 @@ from contenders.contender import Unsupported  # noqa: E402
 from contenders.programs import find_executable  # noqa: E402
 from effect_list import parameters  # noqa: E402
 from equal_error import compare as best_against_best  # noqa: E402
+from page_part import with_part  # noqa: E402
 from pages import PAGES  # noqa: E402
 from record import Record  # noqa: E402
 
 DOCS = PROJECT / "docs"
+# `make compare` asks for these, and `make test` alone does not; .ci/run has them.
+needs_contenders = pytest.mark.skipif(
+    not (find_spec("numba") and find_spec("scipy")), reason="numba or SciPy is missing"
+)
 STEMS = (*compare.TIMED, "hard_cases")
 RECORDS = {stem: Record.read(DOCS / PAGES[stem].record.format(stem)) for stem in STEMS}
 
@@ -46,12 +49,38 @@ def test_every_written_page_is_what_its_record_says():
     told = json.loads((DOCS / "records/comparison/textbook.json").read_text())
     for document, (name, excerpt) in excerpts.EXCERPTS.items():
         text = (PROJECT / document).read_text()
-        assert excerpts.insert(text, name, excerpt(told)) == text, document
+        assert with_part(text, name, excerpt(told)) == text, document
+
+
+def changed(stem, contender, **scaled):
+    """Return a record in which some metrics of a contender are multiplied."""
+    record = RECORDS[stem]
+    rows = record.rows()
+    for row in rows:
+        if row["contender"] == contender:
+            row |= {key: row[key] * by for key, by in scaled.items() if row.get(key) is not None}
+    return Record.of(record.measured, record.contenders, record.cases, rows)
+
+
+LOST = [
+    ("textbook", "heyoka", {"minimum_us": 0.1}, "slower than the best peer at 1e-2 (heyoka"),
+    ("chains", "mujoco_parts", {"minimum_ns": 0.01}, "n = 10: MuJoCo parts of mj_forward takes"),
+    ("chains", "pendcore", {"minimum_ns": 3.0}, "promised is at most 1/5: **missed**"),
+    ("effects", "one_effect_more", {"instructions": 1.1}, "**missed**"),
+    ("effects", "mujoco_forward", {"minimum_ns": 1e-3}, "viscous joint in a call"),
+]
+
+
+@pytest.mark.parametrize(("stem", "contender", "scaled", "told"), LOST)
+def test_a_loss_is_told_where_the_record_has_one(stem, contender, scaled, told):
+    assert told in pages.page(stem, changed(stem, contender, **scaled))
+    assert told not in pages.page(stem, RECORDS[stem])
 
 
 TOOK_PART = [("textbook", ("pendcore",)), ("chains", ("odeint", "mujoco")), ("effects", ())]
 
 
+@needs_contenders
 @pytest.mark.parametrize(("stem", "left"), TOOK_PART)
 def test_pages_and_figures_are_made_whoever_took_part(stem, left, tmp_path):
     record = RECORDS[stem]
@@ -66,6 +95,7 @@ def test_pages_and_figures_are_made_whoever_took_part(stem, left, tmp_path):
     assert page.with_suffix(".png").stat().st_size > 1000
 
 
+@needs_contenders
 def test_an_interrupted_measurement_keeps_what_it_has(tmp_path, monkeypatch):
     def measure(stem, **_):
         if stem == "chains":
@@ -78,6 +108,7 @@ def test_an_interrupted_measurement_keeps_what_it_has(tmp_path, monkeypatch):
     assert written == {"textbook.json", "textbook.md", "textbook.png", "README.md"}
 
 
+@needs_contenders
 @pytest.mark.outside_build
 def test_a_quick_run_of_solves_measures_whom_it_finds(tmp_path, monkeypatch):
     few = ("pendcore_dopri5", "pendcore_rk4", "pendcore_dopri5_cpp", "odeint_dopri5", "heyoka")
@@ -96,6 +127,7 @@ def test_a_quick_run_of_solves_measures_whom_it_finds(tmp_path, monkeypatch):
     assert all(one["one_step"]["minimum_us"] > 0 for one in who)
 
 
+@needs_contenders
 @pytest.mark.outside_build
 def test_quick_runs_of_chains_and_effects_measure_pendcore(tmp_path, monkeypatch):
     try:

@@ -12,6 +12,7 @@ sys.path.append(str(ROOT / "bench" / "compare"))
 
 import compare  # noqa: E402
 import hard_case_figures  # noqa: E402
+import hard_case_tables  # noqa: E402
 import hard_cases  # noqa: E402
 import pages  # noqa: E402
 from hard_case_tables import PROGRAMS, missing  # noqa: E402
@@ -33,6 +34,27 @@ def test_the_record_has_every_contender_of_every_case():
         rows = {(who, row["setting"]) for who in PROGRAMS for row in RECORD.points(who, name)}
         assert rows == {(program, how) for program, how, _ in case["contenders"]}
         assert ("figure" in case) == (name in hard_case_figures.FIGURES)
+
+
+RIGHT, WRONG = (1e-12, True), (1e-3, False)
+ALONE = {"title": "One case", "scene": "a", "answer": "b", "unit": "rad", "allowed": 1e-9}
+ALONE |= {"figure": "", "loop_not_run": ()}
+
+
+@pytest.mark.parametrize(
+    ("own", "peer", "told"),
+    [
+        (WRONG, RIGHT, "* One case: c."),
+        ((1e-10, True), RIGHT, "* One case: 1e-10 rad here, 1e-12 rad in SciPy (so)."),
+        (RIGHT, (2e-13, True), "* Nowhere."),
+        ((None, True), RIGHT, "* One case: no answer here (c), 1e-12 rad in SciPy (so)."),
+    ],
+)
+def test_losses_are_told(own, peer, told):
+    of_all = {"case": "one", "setting": "so", "said": "c", "own_loop": False}
+    both = [("pendcore", *own), ("scipy", *peer)]
+    rows = [of_all | {"contender": name, "error": x, "right": ok} for name, x, ok in both]
+    assert told in hard_case_tables.losses(Record.of({}, {}, {"one": ALONE}, rows))
 
 
 def endless():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import re
+import tomllib
 from math import pi
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from drawn_effects import scenes
 from hypothesis import given
 from hypothesis import strategies as st
 from pendcore import effects as fx
+from pendcore._cases.case_file import EVENT_KEYS, KEYS
+from pendcore.options import RUN_DEFAULTS
 
 LINK = "[[link]]\nmass = 1.0\nlength = 1.0\n"
 TEXTBOOK = f"""\
@@ -154,6 +157,31 @@ def test_options_are_simulates_keywords_and_cannot_be_changed():
 
 REFERENCE = (Path(__file__).parents[2] / "docs/how_to/case_files.md").read_text()
 BLOCKS = re.findall(r"```toml\n(.*?)```", REFERENCE, re.DOTALL)
+
+
+def documented():
+    """Kind of table, key and default of every row of the reference."""
+    for section in REFERENCE.split("\n## ")[1:]:
+        title = section.splitlines()[0].strip("`[]")
+        for key, default in re.findall(r"^\| `(\w+)` \| [^|]*\| ([^|]*) \|", section, re.MULTILINE):
+            yield "" if title == "Above all tables" else title, key, default
+
+
+def test_the_reference_has_every_key_and_no_other_and_the_defaults_of_simulate():
+    found = [(kind, key) for kind, key, _ in documented()]
+    assert found == [(kind, key) for kind, keys in KEYS.items() for key in keys]
+    for kind, key, default in documented():
+        usual = RUN_DEFAULTS.get(key) if kind == "run" else None
+        assert "`None`" not in default, key
+        if usual is not None:
+            assert tomllib.loads(f"default = {default.strip('`')}")["default"] == usual, key
+
+
+def test_the_reference_has_the_keys_of_every_event():
+    (rows,) = re.findall(r"^\| kind \| keys, and for each.*?\n\n", REFERENCE, re.M | re.DOTALL)
+    usual, _, *kinds = (re.findall(r"`(\w+)`", row) for row in rows.strip().splitlines())
+    found = {kind: {"kind", *keys, *usual} for kind, *keys in kinds}
+    assert found == {kind: set(keys) for kind, keys in EVENT_KEYS.items()}
 
 
 @pytest.mark.parametrize("tables", BLOCKS[1:])
