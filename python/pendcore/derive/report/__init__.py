@@ -17,7 +17,7 @@ from pendcore.derive.document import Document, Reader
 from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.contents import report, worksheet
 from pendcore.derive.report.drawing import save
-from pendcore.messages import Progress, callback, close, warn, whole_file
+from pendcore.messages import Progress, reporting, warn, whole_file
 
 
 class Report(list[Path]):
@@ -33,8 +33,7 @@ def write_report(
     derivation: Derivation, case: Case, folder: Path, *, with_worksheet: bool, progress: Progress
 ) -> Report:
     """Write a report in every form that this machine can make; `Derivation.report` says more."""
-    told = callback(progress, "deriving") or (lambda fraction: None)
-    try:
+    with reporting(progress, "deriving") as told:
         told(0.0)
         solution, refusal = motion.solved(case)
         complaint = refusal
@@ -50,8 +49,6 @@ def write_report(
         made = _written(documents, folder, lambda share: told(0.4 + 0.6 * share))
         made.is_whole = made.is_whole and not complaint
         return made
-    finally:
-        close(told)
 
 
 def _written(
