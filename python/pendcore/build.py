@@ -5,9 +5,4 @@ from __future__ import annotations
 from pendcore._core import __version__ as version
 from pendcore._core import compiler, instruction_set
 
-
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["compiler", "instruction_set", "version"]

@@ -5,9 +5,4 @@ from __future__ import annotations
 from pendcore._cases.case_file import KEYS, text_of, with_line
 from pendcore._cases.toml_text import TomlText
 
-
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["KEYS", "TomlText", "text_of", "with_line"]

@@ -30,11 +30,6 @@ from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
 
-
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "Floats",
     "PendcoreWarning",

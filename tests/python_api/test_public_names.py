@@ -6,10 +6,7 @@ from importlib import import_module
 
 import pytest
 
-MODULES = (
-    "build", "case_files", "effects", "events", "messages", "methods", "options", "reducers",
-    "sampling",
-)  # fmt: skip
+MODULES = ("effects", "events", "methods", "options", "reducers", "sampling")
 
 
 @pytest.mark.parametrize("name", MODULES)
