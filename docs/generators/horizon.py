@@ -160,7 +160,7 @@ def draw_run(path: Path) -> None:
     found, valid = run.estimate_error(), run.valid_until(LIMIT)
     sheet = Figure(figsize=(7.2, 6.4), layout="constrained")
     above, middle, below = sheet.subplots(3, 1, sharex=True, height_ratios=[1, 1, 1.5])
-    run.plot([above, middle], horizon=LIMIT)
+    run.plot(ax=[above, middle], horizon=LIMIT)
     for axis in (above, middle):
         axis.set_xlabel("")
         axis.lines[0].set_color("k")  # the shade is what is to be seen

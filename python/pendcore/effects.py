@@ -12,14 +12,13 @@ docstrings. docs/effects has a page on each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-from pendcore._messages.arguments import did_you_mean, in_unit
+from pendcore._messages.arguments import did_you_mean, in_unit, require_known
 from pendcore._scene.effect_class import Described, Effect, OwnEffect, Part
-from pendcore._scene.effect_description import Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -213,7 +212,10 @@ def made(cls: type[Made], values: Mapping[str, Any], where: str | None = None) -
     A part may be a mapping itself.
     """
     where = f"{cls.__name__}: " if where is None else where
-    _check_names(where, cls.description.parameters, values)
+    require_known(where.rstrip(":. "), values, (p.name for p in cls.description.parameters))
+    for p in cls.description.parameters:
+        if p.required and p.name not in values:
+            raise TypeError(f"{where}{p.name} is missing: {p.sentence}{in_unit(p.unit)}")
     new = object.__new__(cls)
     for parameter in cls.description.parameters:
         value: Any = values.get(parameter.name, parameter.default)
@@ -222,17 +224,6 @@ def made(cls: type[Made], values: Mapping[str, Any], where: str | None = None) -
         object.__setattr__(new, parameter.name, value)
     new._settle(where)
     return new
-
-
-def _check_names(where: str, parameters: Iterable[Parameter], given: Iterable[str]) -> None:
-    names = [parameter.name for parameter in parameters]
-    for name in given:
-        if name not in names:
-            owner = f"{where[:-1]} " if where.endswith(".") else where
-            raise TypeError(f"{owner}has no parameter {name!r}: {did_you_mean(name, names)}")
-    for p in parameters:
-        if p.required and p.name not in given:
-            raise TypeError(f"{where}{p.name} is missing: {p.sentence}{in_unit(p.unit)}")
 
 
 def kinds() -> dict[str, type[Effect]]:

@@ -362,6 +362,10 @@ class FoundEvents(list[Found]):
         return np.array([one.direction for one in self], dtype=np.int_)
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 __all__ = [
     "Event",
     "Found",

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from pendcore._cases.whole_file import whole_file
 from pendcore._messages.arguments import (
+    Floats,
     did_you_mean,
     finite_array,
     listed,
     number,
     numbers,
     positive,
+    require_known,
     text,
     time_limit_of,
     time_span,
@@ -24,17 +26,16 @@ from pendcore._messages.arguments import (
 from pendcore._messages.handed_over import forget_inner_runs, hand_over
 from pendcore._messages.html import beside, drawing, table
 from pendcore._messages.json_values import as_json
-from pendcore._messages.progress import Progress, callback, close, reporting
+from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import PendcoreWarning, silence, warn
 from pendcore._scene.scene import require_scene
 
 __all__ = [
+    "Floats",
     "PendcoreWarning",
     "Progress",
     "as_json",
     "beside",
-    "callback",
-    "close",
     "did_you_mean",
     "drawing",
     "finite_array",
@@ -45,6 +46,7 @@ __all__ = [
     "numbers",
     "positive",
     "reporting",
+    "require_known",
     "require_scene",
     "silence",
     "table",

@@ -69,10 +69,18 @@ def evaluations(method: str, last_method: str, nfev: int) -> str:
     return f"{nfev} series, each as long as many right-hand sides"
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 __all__ = [
+    "TIGHTEST",
+    "TIGHTEST_IMPLICIT",
+    "error_over_rtol",
     "evaluations",
     "implicit_method",
     "known_methods",
     "most_accurate",
     "pair_of",
+    "sentences",
 ]

@@ -19,7 +19,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias, TypedDict, TypeVar
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.arguments import did_you_mean
+from pendcore._messages.arguments import require_known
 from pendcore._messages.progress import Progress
 from pendcore.events import Event
 from pendcore.methods import sentences
@@ -129,11 +129,7 @@ def atol_beside(rtol: float) -> float:
 
 def require_options(given: Iterable[str], function: Callable[..., Any]) -> None:
     """Raise a TypeError for a keyword that is none of a function's, whose options are shown."""
-    known = [*signature(function).parameters]
-    for name in given:
-        if name not in known:
-            remedy = did_you_mean(name, known)
-            raise TypeError(f"{function.__name__} has no argument {name!r}: {remedy}")
+    require_known(function.__name__, given, signature(function).parameters)
 
 
 def with_options(
@@ -179,8 +175,15 @@ def _documented(options: list[RunOption], margin: str) -> Iterator[str]:
                 yield fill(text, 100, initial_indent=inner, subsequent_indent=inner)
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 __all__ = [
     "OPTIONS",
+    "RUN_DEFAULTS",
+    "OnFailure",
+    "RunKeywords",
     "RunOption",
     "atol_beside",
     "require_options",

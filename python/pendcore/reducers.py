@@ -135,4 +135,9 @@ class LargestExponent(Reducer):
 REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, LargestExponent)
 """Those that the core computes."""
 
+
+def __dir__() -> list[str]:
+    return __all__
+
+
 __all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]

@@ -103,4 +103,8 @@ def _shares(size: Size, seed: int) -> Floats:
     return drawn
 
 
+def __dir__() -> list[str]:
+    return __all__
+
+
 __all__ = ["normal", "uniform"]

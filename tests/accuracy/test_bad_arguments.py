@@ -147,7 +147,7 @@ BAD: dict[str, tuple[Callable[..., Any], list[Row]]] = {
             ({"points": 2.5}, "points = 2.5: must be a whole number"),
             ({"repeats": 0}, "repeats = 0: must be >= 1"),
             ({"t_span": (0, 0)}, r"t_span = \(0, 0\): must be two different times"),
-            ({"method": 1}, "accuracy_cost has no argument 'method': did you mean 'methods'"),
+            ({"method": 1}, "accuracy_cost has no parameter 'method': did you mean 'methods'"),
             ({"q0": [1, 2, 3]}, "q0: shape"),
             *NOT_SPANS,
             *NOT_METHODS,

@@ -99,7 +99,7 @@ def test_a_wrong_number_of_axes_is_refused(sol):
 
 def test_solutions_on_the_same_axes_can_be_told_apart(sol):
     first = sol.plot(label="rtol 1e-9")
-    second = run().plot([line.axes for line in first], label="another start")
+    second = run().plot(ax=[line.axes for line in first], label="another start")
     for one, other in zip(first, second, strict=True):
         assert one.get_linestyle() != other.get_linestyle()
         assert legend(one.axes) == ["rtol 1e-9", "another start"]
@@ -111,7 +111,7 @@ def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol):
     assert ax.get_ylabel() == "q (deg)"
     assert legend(ax) == ["q1", "q2"]
     _, ax = plt.subplots()
-    lines = [line for label in "abc" for line in sol.plot(ax, label=label)]
+    lines = [line for label in "abc" for line in sol.plot(ax=ax, label=label)]
     assert {line.axes for line in lines} == {ax}
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 6
     assert legend(ax) == ["q1, a", "q2, a", "q1, b", "q2, b", "q1, c", "q2, c"]
@@ -131,7 +131,7 @@ def test_rest_looks_like_rest_and_what_is_drawn_after_it_is_seen_whole(sol):
     assert np.ptp(axes.get_ylim()) == pytest.approx(0.1)
     axes.figure.canvas.draw()
     assert axes.yaxis.get_major_formatter().get_offset() == ""
-    sol.plot([line.axes for line in hanging])
+    sol.plot(ax=[line.axes for line in hanging])
     low, high = axes.get_ylim()
     angles = np.rad2deg(sol.q[:, 0])
     assert low < angles.min() < angles.max() < high

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
+from matplotlib.figure import Figure
 from pendcore.plotting import KINDS, save_figure
 from pendcore.plotting.poses import forces_on_links
 from runs_that_kept_little import axes
@@ -20,7 +21,7 @@ def sol():
 
 
 def test_rates_are_those_of_the_run_in_rad_per_second(sol):
-    lines = sol.plot(axes(2), what="rates")
+    lines = sol.plot("rates", axes(2))
     for i, line in enumerate(lines):
         t, curve = line.get_data()
         assert np.array_equal(curve, sol(t)[2 + i])
@@ -29,7 +30,7 @@ def test_rates_are_those_of_the_run_in_rad_per_second(sol):
 
 
 def test_reactions_have_components_and_sizes_in_newtons(sol):
-    lines = sol.plot(axes(2), what="reactions")
+    lines = sol.plot("reactions", axes(2))
     assert [line.get_label() for line in lines] == [
         "F_01 x", "F_01 y", "|F_01|", "F_12 x", "F_12 y", "|F_12|",
     ]  # fmt: skip
@@ -42,7 +43,7 @@ def test_reactions_have_components_and_sizes_in_newtons(sol):
 def test_the_energy_has_its_ledger_below(sol):
     damped = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
     run = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True)
-    lines = run.plot(axes(2), what="energy")
+    lines = run.plot("energy", axes(2))
     found = {line.get_label(): line.get_data() for line in lines}
     assert set(found) == {"kinetic", "potential", "total", "viscous (lost)", "residual"}
     t, total = found["total"]
@@ -50,12 +51,12 @@ def test_the_energy_has_its_ledger_below(sol):
     assert total + lost == pytest.approx(np.full(len(t), total[0]), abs=0.05)
     assert found["kinetic"][1][0] == 0.0
     bare = pc.simulate(damped, q0=0.5, t_span=(0, 5))
-    assert len(bare.plot(axes(), what="energy")) == 3
+    assert len(bare.plot("energy", axes())) == 3
 
 
 def test_the_path_is_that_of_the_tip_and_y_points_down(sol):
     ax = axes()
-    (line,), (other,) = (sol.plot(ax, what="path") for _ in range(2))
+    (line,), (other,) = (sol.plot("path", ax) for _ in range(2))
     x, y = line.get_data()
     assert (x[-1], y[-1]) == pytest.approx(tuple(sol.positions()[-1, -1]), abs=1e-12)
     assert line.axes.yaxis_inverted()  # after the second path too
@@ -65,7 +66,7 @@ def test_the_path_is_that_of_the_tip_and_y_points_down(sol):
 
 
 def test_the_phase_portrait_has_a_curve_for_each_link(sol):
-    lines = sol.plot(axes(), what="phase")
+    lines = sol.plot("phase", axes())
     assert len(lines) == 2
     assert lines[1].get_xdata()[0] == sol.q[0, 1]
     assert lines[1].get_ydata()[-1] == sol.qd[-1, 1]
@@ -73,7 +74,7 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol):
 
 
 def test_a_section_shows_the_states_at_an_event(sol):
-    (line,) = sol.plot(axes(), what="section", link=2)
+    (line,) = sol.plot("section", axes(), link=2)
     assert len(line.get_xdata()) == len(sol.events[0]) > 2
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
@@ -82,11 +83,11 @@ def test_a_section_shows_the_states_at_an_event(sol):
 def test_a_section_without_events_says_how_to_look_for_them():
     run = pc.Case.textbook().simulate()
     with pytest.raises(ValueError, match=r"looked for no event: give simulate\(\.\.\., events="):
-        run.plot(axes(), what="section")
+        run.plot("section", axes())
 
 
 def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
-    artists = sol.plot(axes(), what="strip", t=[0.0, 1.5, 4.0])
+    artists = sol.plot("strip", axes(), t=[0.0, 1.5, 4.0])
     lines, texts = artists[::2], artists[1::2]
     assert [text.get_text() for text in texts] == ["0 s", "1.5 s", "4 s"]
     pose = np.array(lines[1].get_data()).T
@@ -133,7 +134,7 @@ def test_a_fast_pivot_is_no_force_on_a_link():
 
 
 def test_free_bodies_show_each_force_by_its_size(sol):
-    artists = sol.plot(axes(), what="free_bodies", t=1.0, color="b")
+    artists = sol.plot("free_bodies", axes(), t=1.0, color="b")
     axis = artists[0].axes
     sizes = [text.get_text() for text in axis.texts if text.get_text().endswith("N")]
     assert sizes.count(sizes[1]) == 2  # action and reaction
@@ -146,22 +147,23 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
     assert until < 25
     for what, rows in (("angles", 2), ("rates", 2), ("reactions", 2), ("energy", 1)):
         ax = axes(rows)
-        chaotic.plot(ax, what=what, horizon=0.1)
+        chaotic.plot(what, ax, horizon=0.1)
         for axis in ax:
             (shade,) = axis.patches
             assert shade.get_x() == pytest.approx(until)
             assert shade.get_x() + shade.get_width() == pytest.approx(30)
     for what in ("path", "phase"):
-        line = chaotic.plot(axes(), what=what, horizon=0.1)[0]
-        assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(axes(), what=what)[0].get_xdata())
-    right = pc.simulate(BOOK, q0=[1.0, 1.0], t_span=(0, 1)).plot(axes(2), horizon=0.1)
+        line = chaotic.plot(what, axes(), horizon=0.1)[0]
+        assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())
+    right = pc.simulate(BOOK, q0=[1.0, 1.0], t_span=(0, 1)).plot(ax=axes(2), horizon=0.1)
     assert not right[0].axes.patches
 
 
 REFUSED = [
-    ({"wat": "rates"}, r"Solution\.plot: has no parameter 'wat': did you mean"),
+    ({"wat": "rates"}, r"Solution\.plot has no parameter 'wat': did you mean 'what'\?"),
     ({"colour": "r"}, "no parameter 'colour': did you mean 'color'"),
     ({"data": 1}, "no parameter 'data'"),
+    ({"what": Figure().subplots()}, "is of type Axes: must name what is drawn; axes are given by"),
     ({"what": "angle"}, r"what = 'angle': did you mean 'angles'\?"),
     ({"what": "angles", "t": 1.0}, "t: belongs to what = 'strip' and 'free_bodies'"),
     ({"what": "path", "link": 2}, "link: belongs to what = 'section'"),
@@ -178,15 +180,15 @@ REFUSED = [
 def test_what_a_figure_cannot_show_is_refused(sol):
     for given, message in REFUSED:
         with pytest.raises((ValueError, TypeError), match=message):
-            sol.plot(axes(), **given)
+            sol.plot(**{"ax": axes()} | given)
 
 
 def test_poses_are_at_the_kept_times_unless_others_are_asked_for():
     later = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.0, 4.5])
-    texts = [text.get_text() for text in later.plot(axes(), what="strip")[1::2]]
+    texts = [text.get_text() for text in later.plot("strip", axes())[1::2]]
     assert texts == ["1 s", "1.5 s", "2 s", "2.5 s", "3 s", "3.5 s", "4 s", "4.5 s"]
-    assert later.plot(axes(), what="free_bodies")[0].axes.get_title() == "t = 1 s"
-    assert len(later.plot(axes(), what="strip", t=[0.3])) == 2
+    assert later.plot("free_bodies", axes())[0].axes.get_title() == "t = 1 s"
+    assert len(later.plot("strip", axes(), t=[0.3])) == 2
 
 
 @pytest.mark.parametrize("what", [kind for kind in KINDS if kind != "section"])

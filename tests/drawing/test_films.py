@@ -6,6 +6,7 @@ import json
 import shutil
 import subprocess
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
@@ -149,6 +150,7 @@ def test_what_cannot_be_filmed_is_refused(sol, tmp_path):
         ({"speed": 0.0}, "speed = 0.0: must be > 0"),
         ({"speed": 1e-4}, "give speed=0.0333 for one of a minute"),
         ({"fps": -1}, "fps = -1.0: must be > 0"),
+        ({"fps": "30"}, "fps = '30': must be a real number"),
         ({"size": (641, 360)}, r"size\[0\] = 641: must be even"),
         ({"size": 640}, "size = 640: must be"),
         ({"trace": -1}, r"trace = -1.0: must be >= 0 \(s\); inf shows"),
@@ -162,6 +164,18 @@ def test_what_cannot_be_filmed_is_refused(sol, tmp_path):
     with pytest.raises(TypeError, match="must be a Solution"):
         sol.to_video(tmp_path / "a.gif", sol.scene)
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"fps": -1}, {"speed": 1e-4}, {"trace": -1}, {"horizon": "x"}, {"names": ("a", "b")}],
+    ids=str,
+)
+def test_what_cannot_be_animated_opens_no_figure(sol, given):
+    plt.close("all")
+    with pytest.raises((ValueError, TypeError), match=next(iter(given))):
+        sol.animate(**given)
+    assert plt.get_fignums() == []
 
 
 def test_an_animation_draws_its_frames(sol):

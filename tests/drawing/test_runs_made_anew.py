@@ -87,7 +87,7 @@ def test_times_that_were_kept_close_together_are_drawn_without_a_second_run():
     law, t = Counted(), np.linspace(0, 10, 3001)
     run = simulate(SWINGING.replace(effects=[pc.effects.User(law)]), t_eval=t)
     before = law.calls
-    assert np.array_equal(run.plot(axes(1))[0].get_xdata(), t)
+    assert np.array_equal(run.plot(ax=axes(1))[0].get_xdata(), t)
     assert law.calls == before
 
 
@@ -97,7 +97,7 @@ def test_chords_are_not_seen_where_links_are_fast(store):
     run = simulate(SWINGING, qd0=48.0, t_span=(0, 60), method="taylor", store=store)
     assert run.stats.accepted > 1000
     for what in ("phase", "path"):
-        assert len(run.plot(axes(), what=what)[0].get_xdata()) > 60 * 48 / 0.05
+        assert len(run.plot(what, axes())[0].get_xdata()) > 60 * 48 / 0.05
     (path, *_), title = thumbnail(run)
     assert re.search(r"the path of its tip in the last [0-9.]+ s$", title)
     center = (path.min(axis=0) + path.max(axis=0)) / 2
@@ -113,7 +113,7 @@ def test_a_swing_kept_where_it_turns_is_not_taken_for_rest():
     turns = simulate(SWINGING, events=[turn]).events[0].t[1::2]
     kept = simulate(SWINGING, t_eval=turns)
     assert np.ptp(kept.q) < 1e-6
-    assert np.ptp(kept.plot(axes(1))[0].get_ydata()) > 100  # deg
+    assert np.ptp(kept.plot(ax=axes(1))[0].get_ydata()) > 100  # deg
 
 
 SENTENCE = r"^t: this solution keeps no dense output: simulate with store=\"dense\"; "
@@ -126,8 +126,8 @@ def test_a_run_that_cannot_be_had_again_is_refused_in_the_words_of_its_call(tmp_
     damping[0] = 0.2
     figures = ("angles", "rates", "reactions", "energy", "path", "phase", "strip")
     for draw in (
-        *(partial(run.plot, axes(1), what=what) for what in figures),
-        partial(run.plot, axes(1), what="free_bodies", t=0.5),
+        *(partial(run.plot, what, axes(1)) for what in figures),
+        partial(run.plot, "free_bodies", axes(1), t=0.5),
         partial(run.to_video, tmp_path / "run.gif"),
         run.animate,
     ):
@@ -149,7 +149,7 @@ def test_an_archive_of_other_bits_is_refused_and_not_drawn_as_something_else(tmp
     np.savez(tmp_path / "run.npz", **entries)
     other = pc.load(tmp_path / "run.npz")
     with pytest.raises(ValueError, match=SENTENCE + ".*another version of pendcore made it"):
-        other.plot(axes(2))
+        other.plot(ax=axes(2))
     assert "the path of its tip" not in other._repr_html_()
 
 
@@ -158,9 +158,9 @@ def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch):
     needed = 8 * run.stats.accepted * 4 * (simulate(TEXTBOOK)._run.dense_degree + 1)
     monkeypatch.setattr(dense_output, "MOST_BYTES", needed - 1)
     with pytest.raises(ValueError, match=SENTENCE + "it would take .* GiB"):
-        run.plot(axes(2))
+        run.plot(ax=axes(2))
     monkeypatch.setattr(dense_output, "MOST_BYTES", needed)
-    run.plot(axes(2))
+    run.plot(ax=axes(2))
 
 
 def test_an_exception_of_ones_own_function_passes_without_the_inner_run():
@@ -169,5 +169,5 @@ def test_an_exception_of_ones_own_function_passes_without_the_inner_run():
     run = simulate(SWINGING.replace(effects=[pull]), store="end")
     mass[0] = 0.0
     with pytest.raises(ZeroDivisionError) as stop:
-        run.plot(axes(1))
+        run.plot(ax=axes(1))
     assert not hasattr(stop.value, "solution")

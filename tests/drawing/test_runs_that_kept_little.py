@@ -52,7 +52,7 @@ def test_no_frame_and_no_curve_shows_a_rod_beyond_its_stop():
         assert angle.max() <= STOP + 1e-9
         assert (angle > STOP - 0.1).any()
     assert angle[-1] == angle[-40]  # it rests to the end
-    curve = few(BOUNCING).plot(axes(2))[0].get_ydata()
+    curve = few(BOUNCING).plot(ax=axes(2))[0].get_ydata()
     assert np.rad2deg(STOP) + 1e-7 >= curve.max() > np.rad2deg(1.8)
 
 
@@ -82,7 +82,7 @@ def values(what, run, t):
 @pytest.mark.parametrize("kept", ["times", "stop", "loaded", "resumed past events", "broken off"])
 def test_each_curve_over_time_is_the_dense_output(kept, what, tmp_path):
     run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
-    lines = run.plot(axes(1 if what == "energy" else 2), what=what)
+    lines = run.plot(what, axes(1 if what == "energy" else 2))
     true = values(what, dense, lines[0].get_xdata())
     assert len(lines) == len(true)
     for line, curve in zip(lines, true, strict=True):
@@ -93,25 +93,25 @@ def test_each_curve_over_time_is_the_dense_output(kept, what, tmp_path):
 @pytest.mark.parametrize("kept", ["times", "end", "stop", "member"])
 def test_paths_phases_and_poses_are_the_dense_output(kept, tmp_path):
     run, dense = RUNS[kept][0](tmp_path), RUNS[kept][1]()
-    t = run.plot(axes(2))[0].get_xdata()
-    (path,) = run.plot(axes(), what="path")
+    t = run.plot(ax=axes(2))[0].get_xdata()
+    (path,) = run.plot("path", axes())
     assert np.abs(np.array(path.get_data()).T - places(dense, t)[:, -1]).max() < 1e-12
-    for i, line in enumerate(run.plot(axes(), what="phase")):
+    for i, line in enumerate(run.plot("phase", axes())):
         assert np.array_equal(line.get_xdata(), dense(t)[i])
         assert np.array_equal(line.get_ydata(), dense(t)[2 + i])
     at = np.array([0.35, 3.7, 9.9])
-    strip = run.plot(axes(), what="strip", t=at)
+    strip = run.plot("strip", axes(), t=at)
     for k, pose in enumerate(places(dense, at)):
         drawn = np.array(strip[2 * k].get_data()).T
         assert np.abs(drawn - drawn[0] - (pose - pose[0])).max() < 1e-12
-    bodies = [run.plot(axes(), what="free_bodies", t=0.35)[0].axes for run in (run, dense)]
+    bodies = [run.plot("free_bodies", axes(), t=0.35)[0].axes for run in (run, dense)]
     told = [[text.get_text() for text in one.texts] for one in bodies]
     assert told[0] == told[1]
 
 
 def test_the_ledger_is_drawn_between_the_times_that_were_kept():
     kept, at_steps = few(BOUNCING, ledger=True), simulate(BOUNCING, ledger=True)
-    lines = {line.get_label(): line for line in kept.plot(axes(2), what="energy")}
+    lines = {line.get_label(): line for line in kept.plot("energy", axes(2))}
     ledger = at_steps.energy().ledger
     assert ledger is not None
     is_last = np.diff(at_steps.t, append=np.inf) > 0  # of those at one time

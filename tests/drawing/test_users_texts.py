@@ -41,8 +41,7 @@ def test_other_texts_are_drawn_as_matplotlib_draws_them(text):
 
 
 def test_a_film_shows_the_name_of_every_run(sol):
-    figure = Figure()
-    Stage([sol] * len(NAMES), figure, Choices(), NAMES)
+    figure = Stage([sol] * len(NAMES), Figure, Choices(), NAMES).figure
     legend = figure.axes[0].get_legend()
     assert legend is not None
     texts = [one.get_text().strip() for one in legend.get_texts()]
@@ -55,7 +54,7 @@ def test_a_film_shows_the_name_of_every_run(sol):
 def test_a_figure_shows_its_label(sol, what, name):
     figure = Figure()
     axes = figure.subplots(2 if what in ("angles", "reactions") else 1, 1)
-    sol.plot(axes, what=what, label=name)
+    sol.plot(what, axes, label=name)
     for axis in figure.axes:
         legend = axis.get_legend()
         assert legend is not None

@@ -160,12 +160,12 @@ def test_a_figure_of_one_axis_is_a_line():
     times = pc.ensemble(BOOK, q0=[[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
     several = "keeps states at several times, which are not one"
     for found, name, options, error, told in (
-        (swept, "q[3]", {}, ValueError, r"name = 'q\[3\]': must be one of q\[1\], q\[2\]"),
+        (swept, "q[3]", {}, ValueError, r"what = 'q\[3\]': must be one of q\[1\], q\[2\]"),
         (swept, None, {"resolved": [True, False]}, ValueError, r"resolved: shape \(2,\): must be "),
         (pc.ensemble(BOOK, **how), None, {}, ValueError, "a figure needs one axis or two"),
         (times, None, {}, ValueError, several),
         (times, "q[1]", {}, ValueError, several),
-        (times, times.q, {}, TypeError, "name: is of type ndarray: must name what is"),
+        (times, times.q, {}, TypeError, "what: is of type ndarray: must name what is"),
     ):
         with pytest.raises(error, match=told):
             found.plot(name, **options)

@@ -108,7 +108,7 @@ RUNS: dict[str, Pair] = {
 
 
 def stage(*runs: pc.Solution, **given: Any) -> Stage:
-    return Stage(runs, Figure(), Choices(**given), [""] * len(runs))
+    return Stage(runs, Figure, Choices(**given), [""] * len(runs))
 
 
 def axes(rows: int = 1) -> Any:

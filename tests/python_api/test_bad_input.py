@@ -167,12 +167,12 @@ OPTIONS_OF_A_RUN = [
     ({"scene": 5, "t_span": 5}, "scene = 5: must be a pendcore.Scene"),
     ({"scene": pc.Case.textbook()}, "scene: is a Case: ... case.simulate()"),
     ({"progress": 3}, "progress = 3: must be None, True, False, or"),
-    ({"rtoll": 1e-6}, "simulate has no argument 'rtoll': did you mean 'rtol'?"),
-    ({"tspan": (0, 1)}, "simulate has no argument 'tspan': did you mean 't_span'?"),
-    ({"tend": 3}, "simulate has no argument 'tend': did you mean 't_span'?"),
+    ({"rtoll": 1e-6}, "simulate has no parameter 'rtoll': did you mean 'rtol'?"),
+    ({"tspan": (0, 1)}, "simulate has no parameter 'tspan': did you mean 't_span'?"),
+    ({"tend": 3}, "simulate has no parameter 'tend': did you mean 't_span'?"),
     *[({name: below(one.range)}, f"{name} = {below(one.range)} ... : must be {one.range}")
       for name, one in OPTIONS.items() if one.range],
-    ({"xyzzy": 1}, "simulate has no argument 'xyzzy': known are scene, t_span, q0, qd0, "),
+    ({"xyzzy": 1}, "simulate has no parameter 'xyzzy': known are scene, t_span, q0, qd0, "),
 ]  # fmt: skip
 
 

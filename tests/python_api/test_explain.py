@@ -60,7 +60,6 @@ def test_natural_frequencies_rates_and_stability_are_the_exact_ones(case):
     scene, name, stability, frequencies, rates = MODES[case]
     found = named(scene, name)
     assert found.stability == stability
-    assert found.stable == (stability == "stable")
     oscillating = [mode for mode in found.modes if mode.angular_frequency > 0]
     angular = np.array([mode.angular_frequency for mode in oscillating])
     np.testing.assert_allclose(angular, frequencies, rtol=1e-8)
@@ -116,7 +115,7 @@ def test_the_start_is_one_more_place_to_look_from():
     level = rods(2).explain(q=[pi / 2, -pi / 2])
     assert [found.name for found in level.equilibria] == ["hanging", "upright", "start"]
     assert level.equilibria[0].q == (pi / 2, pi / 2)
-    assert not level.equilibria[2].stable
+    assert level.equilibria[2].stability == "unstable"
     near = rods(2).explain(q=[pi / 2 + 0.1, pi / 2]).equilibria
     assert [found.name for found in near] == ["hanging", "upright"]  # it leads to one of them
 
@@ -125,7 +124,8 @@ def test_without_gravity_nothing_has_a_rate_and_no_pose_is_stable_or_unstable():
     free = rods(2, gravity=0.0).explain()
     assert (free.stiffest_rate, free.first_step) == (0.0, None)
     assert "first step      nothing is known here to choose it by" in repr(free)
-    assert not any(x.stable for x in rods(1, gravity=0.0).explain(q=[0.3]).equilibria)
+    equilibria = rods(1, gravity=0.0).explain(q=[0.3]).equilibria
+    assert {x.stability for x in equilibria} == {"indifferent"}
     damped = repr(rods(2, fx.ViscousJoint(1, 1.0), gravity=0.0).explain())
     assert "hanging, indifferent: q" in damped
     assert "hanging, stable: q" in repr(rods(1, fx.Lock(1), gravity=0.0).explain())  # all is held
@@ -142,15 +142,16 @@ AN_INSTANT = "those of the instant t = 0.5 s"
 OUTSIDE = "s is outside the {} of effect 2 ({}), 0 to 2 s: no equilibria are computed there"
 TABLE = fx.Motor(1, table=fx.Table([0, 2], [0, 1]))
 SPLINE = fx.DrivenPivot(spline=fx.Spline([0, 2], [0, 1], [0, 0]))
-# For each the scene, the time, and what its only remark says; the first three look at an instant.
+# For each the scene, the time, and what its only remark says; the first four look at an instant.
 REMARKS = {
     "shaken": (rods(2, fx.DrivenPivot(y=fx.Sinusoid(0.01, 350.0))), 0.5, AN_INSTANT),
     "sinusoid": (rods(2, fx.Motor(1, sinusoid=fx.Sinusoid(0.1, 2.0))), 0.5, AN_INSTANT),
     "table": (rods(2, fx.Motor(1, table=fx.Table([0, 1], [0, 1]))), 0.5, AN_INSTANT),
+    "function": (rods(2, fx.User(lambda t, q, qd: np.sin(t) * np.ones(2))), 0.5, AN_INSTANT),
     "controller": (rods(2, fx.Motor(1, pd=fx.PD(40, 2, 1.5))), 0.5, None),
-    "friction": (rods(2, fx.DryJointFriction(1, 5.0)), 0, "dry friction is left out"),
+    "friction": (rods(2, fx.DryJointFriction(1, 5.0)), 0, "dry joint friction is left out"),
     # It touches where the scene hangs, and upright lies beyond it.
-    "stop": (rods(2, fx.JointStop(1, range=(0.0, pi / 2))), 0, "stops are left out"),
+    "stop": (rods(2, fx.JointStop(1, range=(0.0, pi / 2))), 0, "joint stop is left out"),
     "locks": (rods(3, fx.Lock(1), fx.Lock(3)), 0, "joints 1, 3: a lock takes its angle from"),
     "lock, given": (rods(2, fx.Lock(2, angle=0.0)), 0, None),
     "before": (rods(1, fx.Payload(0.1), TABLE), -0.1, OUTSIDE.format("table", "motor")),

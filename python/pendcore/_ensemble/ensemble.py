@@ -327,7 +327,7 @@ class Ensemble:
 
     def plot(
         self,
-        name: str | None = None,
+        what: str | None = None,
         ax: Any = None,
         *,
         resolved: npt.ArrayLike | None = None,
@@ -337,13 +337,13 @@ class Ensemble:
 
         Parameters
         ----------
-        name : str, optional
+        what : str, optional
             A reducer with one number for each member, or a component of the end state: ``"q[1]"``,
             ``"qd[2]"``. Default: the first such reducer, or ``"q[1]"``.
-        ax : optional
-            An axes of matplotlib's.
+        ax : Axes or two Axes, optional
+            Default: those of a new figure of pyplot's, which is not shown.
         resolved : array_like of bool, (...), optional
-            What `resolved` found. In a new figure of two axes, it is drawn beside the map.
+            What `resolved` found. A map shows it in a second axes, a curve by marks.
         **properties
             Passed on to matplotlib's ``pcolormesh`` or ``plot``.
 
@@ -362,7 +362,7 @@ class Ensemble:
         """
         from pendcore.plotting.map import plot
 
-        return plot(self, name, ax, resolved, properties)
+        return plot(self, what, ax, resolved, properties)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.

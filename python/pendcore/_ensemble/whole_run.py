@@ -14,7 +14,7 @@ from pendcore._ensemble.new_store import bytes_of, in_words
 from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
-from pendcore._messages.arguments import did_you_mean, time_limit_of, whole_number
+from pendcore._messages.arguments import require_known, time_limit_of, whole_number
 from pendcore._messages.handed_over import hand_over, raise_with
 from pendcore._messages.progress import reporting
 from pendcore._messages.warning import PendcoreWarning, warn
@@ -28,10 +28,7 @@ _OF_THE_WHOLE: dict[str, Any] = {
 
 def of_the_whole(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> dict[str, Any]:
     """Return all options of the whole; one that is unknown is refused."""
-    for name in given:
-        if name not in _OF_THE_WHOLE:
-            remedy = did_you_mean(name, [*others, *_OF_THE_WHOLE])
-            raise TypeError(f"{owner}: has no parameter {name!r}: {remedy}")
+    require_known(owner, given, [*others, *_OF_THE_WHOLE])
     return _OF_THE_WHOLE | given
 
 

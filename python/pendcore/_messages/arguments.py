@@ -34,6 +34,14 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}?" if near else known_ones
 
 
+def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise a TypeError for a name that is none of the parameters of its owner."""
+    names = [*known]
+    for name in given:
+        if name not in names:
+            raise TypeError(f"{owner} has no parameter {name!r}: {did_you_mean(name, names)}")
+
+
 def number(name: str, value: object, unit: str) -> float:
     """Return one real number as a float."""
     if isinstance(value, bool) or not isinstance(value, Real):

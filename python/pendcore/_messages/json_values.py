@@ -9,7 +9,12 @@ import numpy as np
 
 
 def as_json(value: Any) -> Any:
-    """Return a value without what JSON lacks: tuples, NumPy's numbers, infinities and NaN."""
+    """Return a value without what JSON lacks: tuples, NumPy's numbers, infinities and NaN.
+
+    Named tuples become dictionaries.
+    """
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
     if isinstance(value, dict):
         return {key: as_json(x) for key, x in value.items()}
     if isinstance(value, np.ndarray | np.generic):

@@ -56,14 +56,24 @@ class EnergyDrift(NamedTuple):
     changed_by: list[str]
     ledger: bool
 
-    def __str__(self) -> str:
+    @property
+    def verdict(self) -> str:
+        """What follows from a drift that is known and too large; empty otherwise."""
+        is_known = self.ledger or not self.changed_by
+        return TOO_LARGE if self.too_large and is_known else ""
+
+    @property
+    def in_words(self) -> str:
+        """How large the drift is, in words."""
         if self.changed_by and not self.ledger:
             return f"not known (changed by {_listed(self.changed_by)}): run with ledger=True"
         size, share = self.largest_drift, self.relative_drift
         of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
         is_number = size is not None and np.isfinite(size)
-        told = f"{size:.1e} J{of_kinetic}" if is_number else "not a number"
-        return f"{told}; {TOO_LARGE}" if self.too_large else told
+        return f"{size:.1e} J{of_kinetic}" if is_number else "not a number"
+
+    def __str__(self) -> str:
+        return f"{self.in_words}; {self.verdict}" if self.verdict else self.in_words
 
 
 def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:

@@ -704,9 +704,9 @@ class Solution:
 
     def plot(
         self,
+        what: What = "angles",
         ax: Any = None,
         *,
-        what: What = "angles",
         label: str | None = None,
         horizon: float | None = None,
         t: npt.ArrayLike | None = None,
@@ -736,12 +736,12 @@ class Solution:
 
         Parameters
         ----------
+        what : str
+            The figure.
         ax : Axes or array of Axes, optional
             One axes; for angles and rates also one for each link, for reactions one for each joint,
             for energy two with a ledger. Default: a new figure of pyplot's, which is not shown.
             Where curves are drawn already, the next ones are dashed.
-        what : str
-            The figure.
         label : str, optional
             Name of this solution in the legend.
         horizon : float, optional
@@ -770,13 +770,13 @@ class Solution:
         >>> first, second = sol.plot(label="section 2.1")
         >>> second.axes.get_ylabel()  # first.axes.figure.savefig("angles.png") keeps the figure
         'q2 (deg)'
-        >>> sol.plot(what="path")[0].axes.get_ylabel()
+        >>> sol.plot("path")[0].axes.get_ylabel()
         'y (m), downwards'
         """
         from pendcore.plotting.plot import plot
 
         own = {"t": t, "event": event, "link": link, "label": label}
-        return plot(self, ax, what, horizon, own, line_properties)
+        return plot(self, what, ax, horizon, own, line_properties)
 
     def animate(
         self,

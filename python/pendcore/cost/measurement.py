@@ -10,7 +10,7 @@ from math import inf
 from pathlib import Path
 from statistics import median
 from time import monotonic, perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +20,8 @@ from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.point import Point
 from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
 from pendcore.cost.runs import Start, has_error_estimate
+from pendcore.messages import Floats
 from pendcore.methods import known_methods, pair_of
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    Floats = npt.NDArray[np.float64]
 
 # A third of the time limit is for the reference and a third for single runs; the rest for repeats.
 SHARE = 1 / 3

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from math import inf
 from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import pendcore as pc
 from pendcore.cost.runs import Start
+from pendcore.messages import Floats
 from pendcore.methods import (
     TIGHTEST,
     TIGHTEST_IMPLICIT,
@@ -23,11 +24,6 @@ from pendcore.methods import (
     pair_of,
 )
 from pendcore.options import atol_beside
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    Floats = npt.NDArray[np.float64]
 
 # In a stiff scene an implicit method comes first.
 REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))

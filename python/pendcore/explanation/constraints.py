@@ -6,14 +6,10 @@ the same x and the same y: two rows. A lock says that q_j - q_{j-1} stays: one r
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
-import numpy.typing as npt
 
 from pendcore import Scene, effects
-
-Floats: TypeAlias = npt.NDArray[np.float64]
+from pendcore.messages import Floats
 
 
 def locks(scene: Scene) -> dict[int, float | None]:

@@ -17,7 +17,6 @@ whose largest eigenvalues are the reciprocals of these rates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import pi
 from typing import Literal, NamedTuple
 
@@ -25,8 +24,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import Scene
-from pendcore.explanation.constraints import Floats, locks
-from pendcore.messages import silence
+from pendcore.explanation.constraints import locks
+from pendcore.messages import Floats, silence
 
 _LONGEST = 0.5
 """rad, the largest step of Newton's method, which is not to reach a distant equilibrium."""
@@ -37,15 +36,6 @@ _SLOW = 1e-3
 """The share of the stiffest rate below which a rate comes from the inverse."""
 _SINGULAR = 1e-12
 """The share of A's largest singular value below which one means that nothing turns back."""
-_LEFT_OUT = {
-    "dry_joint_friction": "dry friction is left out of the equilibria: it can hold the scene near "
-    "them",
-    "joint_stop": "stops are left out of the equilibria: the scene can rest against them, and not "
-    "beyond them",
-}
-"""Effects under which a motion jumps or sticks have no slope about a state of rest."""
-
-
 Complexes = npt.NDArray[np.complex128]
 
 
@@ -93,10 +83,6 @@ class Equilibrium(NamedTuple):
     stability: Literal["stable", "unstable", "indifferent"]
     modes: tuple[Mode, ...]
     stiffest_rate: float
-
-    @property
-    def stable(self) -> bool:
-        return self.stability == "stable"
 
 
 class FreeAngles:
@@ -149,9 +135,9 @@ class FreeAngles:
 
 
 def find_equilibria(
-    scene: Scene, t: float, start: tuple[float, ...] | None, remarks: list[str]
-) -> Iterator[Equilibrium]:
-    """Find those near hanging, upright and the start; put into the remarks what was not found.
+    scene: Scene, t: float, start: tuple[float, ...] | None
+) -> tuple[tuple[Equilibrium, ...], list[str]]:
+    """Find those near hanging, upright and the start, and remarks on what was not found.
 
     Joints are locked at the angles that their locks give, else as in the start, and without a start
     as in the pose from which the search begins.
@@ -159,11 +145,15 @@ def find_equilibria(
     n = len(scene.links)
     poses = {"hanging": np.full(n, pi / 2), "upright": np.full(n, -pi / 2)}
     poses |= {} if start is None else {"start": np.array(start)}
-    smooth = [one for one in scene.effects if not one.description.jumps_or_sticks]
-    present = {effect.kind for effect in scene.effects}
-    remarks += [remark for kind, remark in _LEFT_OUT.items() if kind in present]
+    # What makes a motion jump or stick has no slope about a state of rest.
+    rough = dict.fromkeys(x.kind for x in scene.effects if x.description.jumps_or_sticks)
+    remarks = [
+        f"{kind.replace('_', ' ')} is left out of the equilibria: it can hold the scene elsewhere, "
+        "and keep it from them"
+        for kind in rough
+    ]
     with silence():  # what is implausible was said when the scene was made
-        scene = scene.replace(effects=smooth)
+        scene = scene.replace(effects=[one for one in scene.effects if one.kind not in rough])
     unknown = [str(joint) for joint, angle in locks(scene).items() if angle is None]
     if start is None and unknown:
         remarks.append(
@@ -171,7 +161,7 @@ def find_equilibria(
             "start, and none was given: hanging and upright are taken as starts; give yours with "
             "explain(q=...)"
         )
-    found: list[Floats] = []
+    found: list[Equilibrium] = []
     for name, pose in poses.items():
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
         balanced = free.balanced_near(pose[free.leaders])
@@ -181,11 +171,11 @@ def find_equilibria(
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
         q = free.q(balanced)
-        if any(np.abs(np.sin((q - other) / 2)).max() < 1e-6 for other in found):
+        if any(np.abs(np.sin((q - other.q) / 2)).max() < 1e-6 for other in found):
             continue
-        found.append(q)
         moved = np.abs(np.sin((q - pose) / 2)).max() > 1e-6
-        yield _described(f"found from {name}" if moved else name, q, *slopes)
+        found.append(_described(f"found from {name}" if moved else name, q, *slopes))
+    return tuple(found), remarks
 
 
 def _described(name: str, q: Floats, by_angle: Floats, by_rate: Floats) -> Equilibrium:

@@ -15,7 +15,7 @@ from pendcore.explanation.explanation import (
     Absence,
     Cost,
     Explanation,
-    changes_with_time,
+    may_change_with_time,
 )
 
 MANY = 60
@@ -49,10 +49,12 @@ def explain(
     elif outside := _outside_of_tables(scene, t):
         remarks.append(f"t = {t:.6g} s is outside {outside}: no equilibria are computed there")
     else:
-        equilibria = tuple(find_equilibria(scene, t, start, remarks))
-    if equilibria and changes_with_time(scene):
+        equilibria, remarks = find_equilibria(scene, t, start)
+    if equilibria and may_change_with_time(scene):
+        has_own = any(effect.description.is_function for effect in scene.effects)
+        own = " (a function of yours may)" if has_own else ""
         remarks.append(
-            f"equilibria are those of the instant t = {t:.6g} s, as if what changes with time "
+            f"equilibria are those of the instant t = {t:.6g} s, as if what changes with time{own} "
             "stayed as it is then; what a fast drive does on average is not in them"
         )
     rank = constraint_rank(scene) if has_matrices else None

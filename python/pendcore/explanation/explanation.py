@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
-from math import isfinite
 from textwrap import wrap
 from typing import Any, NamedTuple
 
 from pendcore import Mobility, Scene, effects
 from pendcore.explanation.equilibria import Equilibrium, Mode
-from pendcore.messages import beside, table
+from pendcore.messages import as_json, beside, table
 
 STEPS_A_PERIOD = 500
 """The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
@@ -124,7 +123,7 @@ class Explanation:
             "effects": [repr(effect) for effect in self.scene.effects],
         }
         own = (one.name for one in fields(self) if one.name != "scene")
-        plain: dict[str, Any] = _plain(told | {name: getattr(self, name) for name in own})
+        plain: dict[str, Any] = as_json(told | {name: getattr(self, name) for name in own})
         return plain
 
     def _repr_html_(self) -> str:
@@ -149,7 +148,7 @@ class Explanation:
 def _text(told: Explanation) -> str:
     """Return an explanation as a table."""
     n, at = len(told.scene.links), f"t = {told.t:.6g} s"
-    is_frozen = told.equilibria and changes_with_time(told.scene)
+    is_frozen = told.equilibria and may_change_with_time(told.scene)
     frozen = f", with all drives held as they are at {at}" if is_frozen else ""
     head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, explained at {at}"
     blocks = [
@@ -166,21 +165,14 @@ def _text(told: Explanation) -> str:
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def changes_with_time(scene: Scene) -> bool:
-    """Return whether an effect has a table, a spline or a sinusoid."""
-    parts = (part for effect in scene.effects for part in effect.parts().values())
-    return any(isinstance(x, effects.Sinusoid | effects.Table | effects.Spline) for x in parts)
-
-
-def _plain(value: Any) -> Any:
-    """JSON knows no tuples, and neither infinities nor NaN."""
-    if hasattr(value, "_asdict"):
-        value = value._asdict()
-    if isinstance(value, dict):
-        return {key: _plain(x) for key, x in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(x) for x in value]
-    return None if isinstance(value, float) and not isfinite(value) else value
+def may_change_with_time(scene: Scene) -> bool:
+    """Return whether an effect has a table, a spline or a sinusoid, or is a function, of t too."""
+    changing = effects.Sinusoid | effects.Table | effects.Spline
+    return any(
+        effect.description.is_function
+        or any(isinstance(part, changing) for part in effect.parts().values())
+        for effect in scene.effects
+    )
 
 
 def _costs(told: Explanation) -> Iterator[str]:

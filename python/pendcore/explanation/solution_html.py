@@ -6,8 +6,8 @@ import numpy as np
 
 from pendcore import Solution
 from pendcore.explanation.solution_text import rows_of
-from pendcore.messages import beside, drawing, table
-from pendcore.plotting.curve import Floats, curve_of, span_of
+from pendcore.messages import Floats, beside, drawing, table
+from pendcore.plotting.curve import curve_of, span_of
 
 _POSES = 6
 """The number of poses in a drawing of a run."""

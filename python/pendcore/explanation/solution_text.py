@@ -40,9 +40,10 @@ def rows_of(solution: Solution) -> list[tuple[str, str]]:
         ]
     every = -(-len(t) // _MANY) or 1
     of_some = f" (of one time in {every})" if every > 1 else ""
-    drift, *trust = str(solution.energy_drift(every)).split("; ")
-    rows.append(("energy", f"drift {drift}{of_some}"))
-    rows += [("", told) for told in trust]
+    drift = solution.energy_drift(every)
+    rows.append(("energy", f"drift {drift.in_words}{of_some}"))
+    if drift.verdict:
+        rows.append(("", drift.verdict))
     return rows
 
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from pendcore import Solution
+from pendcore.messages import require_known
 from pendcore.plotting.style import SHADE
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -55,7 +58,7 @@ class Request:
         """Return the axes that were given, or those of a new figure of a size, inches."""
         if self.ax is None:
             return self.new_figure(figsize=size, layout="constrained").subplots()
-        return _checked(self.ax, (1,), "")[0]
+        return checked_axes(self.ax, (1,), "")[0]
 
     def stacked_axes(self, counts: Sequence[int], which: str) -> list[Axes]:
         """Return the axes that were given, or the most of ``counts`` in a new figure."""
@@ -63,7 +66,7 @@ class Request:
         if ax is None:
             figure = self.new_figure(figsize=(6.4, max(4.8, 1.8 * rows)), layout="constrained")
             ax = figure.subplots(rows, 1, squeeze=False)
-        return _checked(ax, counts, which)
+        return checked_axes(ax, counts, which)
 
     def name_of(self, curve: str) -> str:
         """Return what the legend calls a curve: with the solution's label, if that has one."""
@@ -77,18 +80,45 @@ class Request:
                 axis.axvspan(self.valid_until, end, **SHADE)
 
 
-def _checked(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
+def checked_axes(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
     """Return the given axes as a list; TypeError or ValueError unless they are one of `counts`."""
     from matplotlib.axes import Axes
 
     axes = list(np.ravel(ax))
     told = ", or ".join(dict.fromkeys("one" if k == 1 else f"{k}, {which}" for k in counts))
     if not all(isinstance(axis, Axes) for axis in axes):
-        remedy = "; a figure is chosen by what=" if isinstance(ax, str) else ""
-        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}{remedy}")
+        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes, {told}")
     if len(axes) not in counts:
         raise ValueError(f"ax: {len(axes)} axes: must be {told}")
     return axes
+
+
+def require_name(what: object) -> None:
+    """Raise a TypeError unless what is drawn is given by its name."""
+    if not isinstance(what, str):
+        kind = type(what).__name__
+        raise TypeError(f"what: is of type {kind}: must name what is drawn; axes are given by ax=")
+
+
+def whole_names(
+    plot: Callable[..., Any],
+    artist: type[Artist],
+    given: dict[str, Any],
+    others: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Return properties of what a method draws by their whole names.
+
+    TypeError for one that neither the artist has nor matplotlib takes besides (``others``).
+    """
+    from matplotlib.artist import ArtistInspector
+    from matplotlib.cbook import normalize_kwargs
+
+    whole: dict[str, Any] = normalize_kwargs(given, artist)
+    _, *own, _ = signature(plot).parameters
+    ours = {"array", "data", "xdata", "ydata", "figure"}
+    known = {*ArtistInspector(artist).get_setters(), *others} - ours
+    require_known(plot.__qualname__, whole, [*own, *sorted(known)])
+    return whole
 
 
 def in_plane(axis: Axes) -> None:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from pendcore import Energy, Scene, Solution
-
-Floats: TypeAlias = npt.NDArray[np.float64]
+from pendcore.messages import Floats
 
 TURN = 0.05
 """rad: links, and drives, turn by no more than this from one point to the next."""

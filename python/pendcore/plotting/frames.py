@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import positive
-from pendcore.plotting.curve import Floats
+from pendcore.messages import Floats
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
@@ -50,8 +49,7 @@ class Moves:
 
 def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floats:
     """Return the times of the frames, s: those of the longest run, at `speed` times true time."""
-    rate = positive("fps", fps, "1/s")
-    faster = positive("speed", speed, "")
+    rate, faster = float(fps), float(speed)
     longest = max(solutions, key=lambda one: abs(one.t_reached - one.t_span[0]))
     start, length = longest.t_span[0], longest.t_reached - longest.t_span[0]
     count = abs(length) / faster * rate

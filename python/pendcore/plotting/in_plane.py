@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pendcore.messages import whole_number
+from pendcore.messages import Floats, whole_number
 from pendcore.plotting.axes import Request, in_plane, point_style
-from pendcore.plotting.curve import Floats, curve_of
+from pendcore.plotting.curve import curve_of
 from pendcore.plotting.style import COLORS, DASHES, PALE
 
 if TYPE_CHECKING:

@@ -8,8 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import Ensemble
-from pendcore.plotting.axes import NewFigure, figure_of_pyplot
-from pendcore.plotting.curve import Floats
+from pendcore.messages import Floats
+from pendcore.plotting.axes import (
+    NewFigure,
+    checked_axes,
+    figure_of_pyplot,
+    require_name,
+    whole_names,
+)
 from pendcore.plotting.style import RESOLVED, UNRESOLVED, as_drawn
 from pendcore.reducers import EnergyDrift, FirstEvent
 
@@ -35,10 +41,13 @@ class Axis(NamedTuple):
 
 
 def plot(
-    found: Ensemble, name: str | None, ax: Any, resolved: Any, properties: dict[str, Any]
+    found: Ensemble, what: str | None, ax: Any, resolved: Any, properties: dict[str, Any]
 ) -> list[Any]:
     """Draw a reducer's values, or a component of the end state; see `Ensemble.plot`."""
-    shown = shown_of(found, name)
+    from matplotlib.collections import QuadMesh
+    from matplotlib.lines import Line2D
+
+    shown = shown_of(found, what)
     dimensions = len(found.shape)
     if dimensions not in (1, 2):
         raise ValueError(
@@ -48,11 +57,16 @@ def plot(
     mask = None if resolved is None else np.asarray(resolved, dtype=bool)
     if mask is not None and mask.shape != found.shape:
         raise ValueError(f"resolved: shape {mask.shape}: must be {found.shape}")
+    count = 1 if dimensions == 1 or mask is None else 2
     if dimensions == 1:
-        ax = new_axes(1)[0] if ax is None else ax
-        return _draw_curve(ax, axis_of(found, 0), shown, mask, properties)
-    axes = [ax] if ax is not None else new_axes(1 if mask is None else 2)
-    return draw_map(axes, axis_of(found, 0), axis_of(found, 1), shown, mask, properties)
+        given = whole_names(Ensemble.plot, Line2D, properties)
+    else:
+        given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
+    which = "for the values and for what is resolved"
+    axes = new_axes(count) if ax is None else checked_axes(ax, (count,), which)
+    if dimensions == 1:
+        return _draw_curve(axes[0], axis_of(found, 0), shown, mask, given)
+    return draw_map(axes, axis_of(found, 0), axis_of(found, 1), shown, mask, given)
 
 
 def new_axes(count: int, new_figure: NewFigure = figure_of_pyplot) -> list[Any]:
@@ -61,20 +75,19 @@ def new_axes(count: int, new_figure: NewFigure = figure_of_pyplot) -> list[Any]:
     return list(np.atleast_1d(figure.subplots(1, count, sharex=True, sharey=True)))
 
 
-def shown_of(found: Ensemble, name: str | None) -> Shown:
+def shown_of(found: Ensemble, what: str | None) -> Shown:
     """Return what is drawn of an ensemble for a name."""
     reducers = found.request.reducers
-    if name is not None and not isinstance(name, str):
-        raise TypeError(f"name: is of type {type(name).__name__}: must name what is drawn")
-    if name is None:
-        name = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
-    if name in reducers:
-        reducer = reducers[name]
+    if what is None:
+        what = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
+    require_name(what)
+    if what in reducers:
+        reducer = reducers[what]
         if reducer.labels(1):
-            raise ValueError(f"name = {name!r}: has several numbers for each member: draw them")
-        label = as_drawn(f"{name.replace('_', ' ')} ({reducer.unit})")
+            raise ValueError(f"what = {what!r}: has several numbers for each member: draw them")
+        label = as_drawn(f"{what.replace('_', ' ')} ({reducer.unit})")
         may_be_log = isinstance(reducer, FirstEvent | EnergyDrift)
-        return Shown(label, found[name], may_be_log and is_wide(found[name]))
+        return Shown(label, found[what], may_be_log and is_wide(found[what]))
     if found.request.t_eval is not None:
         raise ValueError(
             'keep="times" keeps states at several times, which are not one number for each member: '
@@ -82,11 +95,11 @@ def shown_of(found: Ensemble, name: str | None) -> Shown:
         )
     n = len(found.members.scene.links)
     known = [f"{x}[{i}]" for x in ("q", "qd") for i in range(1, n + 1)]
-    if name not in known:
-        raise ValueError(f"name = {name!r}: must be one of {', '.join([*reducers, *known])}")
-    kind, _, number = name.partition("[")
+    if what not in known:
+        raise ValueError(f"what = {what!r}: must be one of {', '.join([*reducers, *known])}")
+    kind, _, number = what.partition("[")
     values = getattr(found, kind)[..., int(number[:-1]) - 1]
-    return Shown(f"{name} at the end ({'rad' if kind == 'q' else 'rad/s'})", values)
+    return Shown(f"{what} at the end ({'rad' if kind == 'q' else 'rad/s'})", values)
 
 
 def is_wide(values: Floats) -> bool:
@@ -130,7 +143,7 @@ def draw_map(
         x.values, y.values, values.T, **({"shading": "nearest", "rasterized": True} | properties)
     )
     axes[0].figure.colorbar(image, ax=axes[0], label=shown.label)
-    if mask is None or len(axes) == 1:
+    if mask is None:
         return [image]
     trust = axes[1].pcolormesh(
         x.values, y.values, mask.T.astype(float), cmap=ListedColormap([UNRESOLVED, RESOLVED]),
@@ -149,5 +162,8 @@ def _draw_curve(
     if mask is not None:
         known = {"color": UNRESOLVED, "marker": "x", "linestyle": "none", "label": "not resolved"}
         artists += ax.plot(x.values[~mask], shown.values[~mask], **known)
+        ax.legend()
     ax.set(xlabel=x.label, ylabel=shown.label)
+    if shown.is_log:
+        ax.set_yscale("log", nonpositive="mask")
     return artists

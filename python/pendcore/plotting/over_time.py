@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from pendcore import Energy, Solution
+from pendcore.messages import Floats
 from pendcore.plotting.axes import Request, point_style
-from pendcore.plotting.curve import Floats, curve_of
+from pendcore.plotting.curve import curve_of
 from pendcore.plotting.style import COLORS, DASHES, OUTSIDE, SUM
 
 if TYPE_CHECKING:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from inspect import signature
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 from pendcore import Solution
 from pendcore.messages import did_you_mean, positive, text
-from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot
+from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot, require_name, whole_names
 from pendcore.plotting.in_plane import draw_path, draw_phase, draw_section
 from pendcore.plotting.over_time import draw_angles, draw_energy, draw_rates, draw_reactions
 from pendcore.plotting.poses import draw_free_bodies, draw_strip
@@ -48,8 +47,8 @@ _FIGURES = {
 
 def plot(
     solution: Solution,
-    ax: Any,
     what: str,
+    ax: Any,
     horizon: float | None,
     own: dict[str, Any],
     line_properties: dict[str, Any],
@@ -62,10 +61,12 @@ def plot(
     ``own`` has what only some kinds of figures take; None is what was not given. Without a horizon,
     what is past ``valid_until``, s, is shaded, if that is known.
     """
+    from matplotlib.lines import Line2D
+
     if (label := own.get("label")) is not None:
         own = own | {"label": in_legend(text("label", label))}
     draw = _kind(what, own, horizon).draw
-    given = _properties(line_properties)
+    given = whole_names(Solution.plot, Line2D, line_properties)
     if horizon is not None:
         valid_until = solution.valid_until(horizon)
     return draw(
@@ -97,7 +98,7 @@ def save_figure(
     from matplotlib.figure import Figure
 
     first, *_ = plot(
-        solution, None, what, horizon, {"t": t}, {}, new_figure=Figure, valid_until=valid_until
+        solution, what, None, horizon, {"t": t}, {}, new_figure=Figure, valid_until=valid_until
     )
     figure: Any = first.get_figure(root=True)
     drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
@@ -108,8 +109,9 @@ def save_figure(
 
 def _kind(what: str, own: dict[str, Any], horizon: float | None) -> Kind:
     """Return a kind of figure; ValueError if there is none, or if it has no such parameter."""
+    require_name(what)
     if what not in KINDS:
-        raise ValueError(f"what = {what!r}: {did_you_mean(str(what), KINDS)}")
+        raise ValueError(f"what = {what!r}: {did_you_mean(what, KINDS)}")
     kind = _FIGURES[what]
     for name, value in own.items():
         if value is not None and name not in kind.takes:
@@ -120,19 +122,3 @@ def _kind(what: str, own: dict[str, Any], horizon: float | None) -> Kind:
         if "horizon" not in kind.takes:
             raise ValueError(f"horizon: what = {what!r} shows no times past which it could shade")
     return kind
-
-
-def _properties(given: dict[str, Any]) -> dict[str, Any]:
-    """Return properties of lines by their whole names; TypeError for one that lines have not."""
-    from matplotlib.artist import ArtistInspector
-    from matplotlib.cbook import normalize_kwargs
-    from matplotlib.lines import Line2D
-
-    whole = normalize_kwargs(given, Line2D)
-    properties = {*ArtistInspector(Line2D).get_setters()} - {"data", "xdata", "ydata", "figure"}
-    for name in whole:
-        if name not in properties:
-            _, *own, _ = signature(Solution.plot).parameters
-            told = did_you_mean(name, [*own, *sorted(properties)])
-            raise TypeError(f"Solution.plot: has no parameter {name!r}: {told}")
-    return whole

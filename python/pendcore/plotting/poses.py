@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore import Scene
-from pendcore.messages import finite_array, silence
+from pendcore.messages import Floats, finite_array, silence
 from pendcore.plotting.axes import Request, in_plane
-from pendcore.plotting.curve import Floats, curve_of, span_of
+from pendcore.plotting.curve import curve_of, span_of
 from pendcore.plotting.style import FORCES
 
 if TYPE_CHECKING:

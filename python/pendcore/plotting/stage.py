@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import number, positive, text
-from pendcore.plotting.axes import figure_of_pyplot, in_plane
-from pendcore.plotting.curve import Floats
+from pendcore.messages import Floats, number, positive, text
+from pendcore.plotting.axes import NewFigure, figure_of_pyplot, in_plane
 from pendcore.plotting.frames import Moves, frame_times, moves_of
 from pendcore.plotting.over_time import draw_energies
 from pendcore.plotting.style import CHAINS, LOST, REACTION, in_legend
@@ -38,6 +38,17 @@ class Choices:
     horizon: float | None = None
     beside: bool = False
 
+    def __post_init__(self) -> None:
+        """Check what is given, before anything is computed or opened."""
+        positive("fps", self.fps, "1/s")
+        positive("speed", self.speed, "")
+        if self.horizon is not None:
+            positive("horizon", self.horizon, "rad")
+        if self.trace is not None and not number("trace", self.trace, "s") >= 0:
+            raise ValueError(
+                f"trace = {float(self.trace)}: must be >= 0 (s); inf shows the whole path"
+            )
+
 
 def animate(
     solutions: Sequence[Solution], names: Sequence[str | None] | None, choices: Choices
@@ -47,10 +58,10 @@ def animate(
 
     known = names_of(solutions, names)
     width = 6.4 * (len(solutions) if choices.beside else 1)
-    figure = figure_of_pyplot(figsize=(min(width, 16.0), 6.4 if choices.energy else 5.4))
-    stage = Stage(solutions, figure, choices, known)
+    size = min(width, 16.0), 6.4 if choices.energy else 5.4
+    stage = Stage(solutions, partial(figure_of_pyplot, figsize=size), choices, known)
     frames, interval = len(stage.times), 1000.0 / choices.fps
-    return FuncAnimation(figure, stage.show, frames, interval=interval, blit=True)
+    return FuncAnimation(stage.figure, stage.show, frames, interval=interval, blit=True)
 
 
 def names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tuple[str, ...]:
@@ -78,22 +89,27 @@ class Stage:
     """
 
     def __init__(
-        self, solutions: Sequence[Solution], figure: Figure, choices: Choices, names: Sequence[str]
+        self,
+        solutions: Sequence[Solution],
+        new_figure: NewFigure,
+        choices: Choices,
+        names: Sequence[str],
     ) -> None:
-        self.figure = figure
+        """Open a figure once all that can fail is computed."""
         self.times = frame_times(solutions, choices.fps, choices.speed)
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
-        scenes, strip = _layout(figure, len(solutions), choices)
+        last_right = [_last_right_frame(one, self.times, choices.horizon) for one in solutions]
+        self.figure = new_figure()
+        scenes, strip = _layout(self.figure, len(solutions), choices)
         largest = max(float(np.hypot(*np.moveaxis(one.reactions, -1, 0)).max()) for one in moves)
         length = max(one.total_length for one in moves)
         scale = _ARROW * length / (largest or 1.0) if choices.reactions else 0.0
         for axis in scenes:
             _frame_scene(axis, moves, scale)
         self._players: list[_Player] = []
-        for k, (solution, one) in enumerate(zip(solutions, moves, strict=True)):
+        for k, (one, until) in enumerate(zip(moves, last_right, strict=True)):
             axis, color = scenes[k % len(scenes)], CHAINS[k % len(CHAINS)]
-            until = _last_right_frame(solution, self.times, choices.horizon)
             self._players.append(_Player(axis, one, color, choices, until, scale))
             if names[k]:
                 axis.plot([], [], color=color, linewidth=3, label=in_legend(names[k]))
@@ -139,7 +155,7 @@ class _Player:
     ) -> None:
         self._color, self._moves = color, moves
         self._last_right, self._scale = last_right, scale
-        frames = _trace(choices.trace) * choices.fps / choices.speed
+        frames = (choices.trace or 0.0) * choices.fps / choices.speed
         self._behind = round(min(frames, len(moves.places)))
         (self._trace,) = axis.plot([], [], "-", color=color, linewidth=1.2, alpha=0.55, zorder=2)
         (self._chain,) = axis.plot(
@@ -177,16 +193,6 @@ class _Player:
                 size.set_text(f" {np.hypot(*one):.3g} N")
 
 
-def _trace(given: float | None) -> float:
-    """Return how much of the tip's path is shown, s."""
-    if given is None:
-        return 0.0
-    seconds = number("trace", given, "s")
-    if not seconds >= 0:
-        raise ValueError(f"trace = {seconds}: must be >= 0 (s); inf shows the whole path")
-    return seconds
-
-
 def _layout(figure: Figure, count: int, choices: Choices) -> tuple[list[Axes], Axes | None]:
     columns = count if choices.beside else 1
     figure.set_layout_engine("constrained")
@@ -212,7 +218,7 @@ def _frame_scene(axis: Axes, moves: Sequence[Moves], scale: float) -> None:
 def _last_right_frame(solution: Solution, times: Floats, horizon: float | None) -> int:
     if horizon is None:
         return len(times)
-    valid = solution.valid_until(positive("horizon", horizon, "rad"))
+    valid = solution.valid_until(horizon)
     if valid == solution.t_reached:
         return len(times)
     past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0

@@ -9,14 +9,15 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import Progress, callback, close, warn, whole_file, whole_number
+from pendcore.messages import Progress, reporting, warn, whole_file, whole_number
 from pendcore.plotting.stage import Choices, Stage, names_of
 
 if TYPE_CHECKING:
@@ -63,26 +64,23 @@ def to_video(
         )
     width, height = _even_size(size, SIZES[kind])
     dpi = _DPI[kind] * width / SIZES[kind][0]
-    figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi)
-    canvas = FigureCanvasAgg(figure)
-    stage = Stage(solutions, figure, choices, known)
+    new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
+    stage = Stage(solutions, new_figure, choices, known)
+    canvas = FigureCanvasAgg(stage.figure)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
         raise ValueError(
             f"{target}: {len(frames)} frames: a GIF is made in memory and may have "
             f"{_MOST_GIF_FRAMES}: take fewer fps, more speed, or an MP4"
         )
-    report = callback(progress, "drawing", len(frames), "frames")
-    try:
-        with whole_file(target) as file:
-            pictures = _pictures(stage, canvas, frames, report)
-            if kind == ".mp4":
-                _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
-            else:
-                samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
-                _write_gif(samples, pictures, file, (width, height), choices.fps)
-    finally:
-        close(report)
+    drawing = reporting(progress, "drawing", len(frames), "frames")
+    with drawing as report, whole_file(target) as file:
+        pictures = _pictures(stage, canvas, frames, report)
+        if kind == ".mp4":
+            _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
+        else:
+            samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
+            _write_gif(samples, pictures, file, (width, height), choices.fps)
     return target
 
 
@@ -101,7 +99,10 @@ def _even_size(given: tuple[int, int] | None, usual: tuple[int, int]) -> tuple[i
 
 
 def _pictures(
-    stage: Stage, canvas: Any, frames: Sequence[int], report: Any = None
+    stage: Stage,
+    canvas: Any,
+    frames: Sequence[int],
+    report: Callable[[float], object] = lambda fraction: None,
 ) -> Iterator[memoryview]:
     """Yield the pixels of frames, RGBA; they are overwritten by the next."""
     canvas.draw()
@@ -112,8 +113,7 @@ def _pictures(
         for artist in stage.show(k):
             stage.figure.draw_artist(artist)
         yield canvas.buffer_rgba()
-        if report is not None:
-            report((k + 1) / count)
+        report((k + 1) / count)
 
 
 def _ffmpeg() -> str | None:

@@ -13,9 +13,10 @@ import numpy as np
 from pendcore import Case, ensemble, read_case
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.map.forbidden import is_forbidden
-from pendcore.cli.map.refinement import Floats, Mask, levels_of, refined
+from pendcore.cli.map.refinement import Mask, levels_of, refined
 from pendcore.cli.map.table import MapAxis, MapTable, read_map_table
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
+from pendcore.messages import Floats
 from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
 from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from pendcore.messages import Floats
+
 Mask = npt.NDArray[np.bool_]
 
 DIFFERS = 0.05

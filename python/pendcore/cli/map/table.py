@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from pendcore.case_files import TomlText, text_of
-from pendcore.cli.map.refinement import Floats
+from pendcore.messages import Floats
 
 KEYS = {"map": ("show", "x", "y")}
 AXIS_KEYS = ("name", "start", "stop", "count")

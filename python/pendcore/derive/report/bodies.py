@@ -16,7 +16,8 @@ from pendcore.derive.document import Drawing
 from pendcore.derive.narration.page import Page
 from pendcore.derive.report import drawing
 from pendcore.derive.report.drawing import Sketch, clear_direction, direction, name
-from pendcore.derive.report.quantities import Floats, number
+from pendcore.derive.report.quantities import number
+from pendcore.messages import Floats
 
 COUPLES = {"viscous_joint", "torsional_spring", "motor"}
 """Kinds of effects that act by a couple in their joint."""

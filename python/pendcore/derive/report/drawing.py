@@ -20,7 +20,7 @@ from matplotlib.transforms import Affine2D
 
 from pendcore.derive.document import Drawing
 from pendcore.derive.report.labels import Label, place
-from pendcore.derive.report.quantities import Floats
+from pendcore.messages import Floats
 
 BLACK, STEEL = "#1a1a1a", "#d5dde5"
 REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 
-from pendcore.derive.report.quantities import Floats
+from pendcore.messages import Floats
 
 GAPS = np.array([4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0])
 """Gaps between a name and what it names; the first is half a letter."""

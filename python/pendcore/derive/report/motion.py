@@ -13,7 +13,8 @@ from pendcore import AccuracyError, Case, Solution
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Drawing, Paragraph, Table
 from pendcore.derive.report.drawing import lettering
-from pendcore.derive.report.quantities import Floats, Scales, number, quantity
+from pendcore.derive.report.quantities import Scales, number, quantity
+from pendcore.messages import Floats
 
 POINTS = 1201
 """The number of times at which curves are drawn."""
@@ -178,7 +179,7 @@ def energy_check(derivation: Derivation, solution: Solution) -> dict[str, Any]:
 def angles(solution: Solution) -> Drawing:
     """Draw the textbook's figure, the angles over time."""
     figure, axes = _sheets(solution.q.shape[1])
-    solution.plot(axes)
+    solution.plot(ax=axes)
     for axis in axes[:-1]:
         axis.set_xlabel("")
     return Drawing("angles", OF_LINKS, figure)

@@ -6,12 +6,8 @@ import re
 from collections.abc import Iterable
 from math import isfinite
 
-import numpy as np
-import numpy.typing as npt
-
 from pendcore.derive.derivation import Derivation
 
-Floats = npt.NDArray[np.float64]
 DIGITS = 6
 ROUNDING = 1e-12
 """Below this share of the scale of its kind, a number is what rounding leaves of 0."""
