@@ -11,7 +11,6 @@ from pendcore import Ensemble
 from pendcore.plotting.axes import NewFigure, figure_of_pyplot
 from pendcore.plotting.curve import Floats
 from pendcore.plotting.style import RESOLVED, UNRESOLVED, as_drawn
-from pendcore.reducers import EnergyDrift, FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
@@ -73,8 +72,8 @@ def shown_of(found: Ensemble, name: str | None) -> Shown:
         if reducer.labels(1):
             raise ValueError(f"name = {name!r}: has several numbers for each member: draw them")
         label = as_drawn(f"{name.replace('_', ' ')} ({reducer.unit})")
-        may_be_log = isinstance(reducer, FirstEvent | EnergyDrift)
-        return Shown(label, found[name], may_be_log and is_wide(found[name]))
+        is_log = reducer.is_log_if_wide and is_wide(found[name])
+        return Shown(label, found[name], is_log)
     if found.request.t_eval is not None:
         raise ValueError(
             'keep="times" keeps states at several times, which are not one number for each member: '
