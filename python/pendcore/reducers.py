@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
+from pendcore._messages.arguments import Floats
 from pendcore.events import Event
 
 
@@ -24,11 +27,25 @@ class Reducer:
     usual_name: ClassVar[str]
     """Its name, if it is given alone."""
     unit: ClassVar[str]
+    is_log_if_wide: ClassVar[bool] = False
+    """Whether figures show values of several orders of magnitude on a logarithmic scale."""
+    needs_one_tolerance: ClassVar[bool] = False
+    """Whether ``rtol`` and ``atol`` must be one number each, for all components."""
+    is_told_by_states: ClassVar[bool] = False
+    """Whether the angles tell if it is resolved, as it is another number in every run."""
 
     @staticmethod
     def labels(n: int) -> dict[str, list[str]]:
         """Return its axes beyond those of the members, with the labels along each."""
         return {}
+
+    @staticmethod
+    def largest_difference(one: Floats, two: Floats) -> Floats | float:
+        """Return how far values of two ensembles may differ and still confirm each other.
+
+        It is 0.1 rad or rad/s unless a reducer says otherwise.
+        """
+        return 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +71,18 @@ class FirstEvent(Reducer):
     event: Event
     usual_name: ClassVar[str] = "first_event"
     unit: ClassVar[str] = "s"
+    is_log_if_wide: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.event, Event):
             raise TypeError(
                 f"event = {self.event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
             )
+
+    @staticmethod
+    def largest_difference(one: Floats, two: Floats) -> Floats:
+        """Return 1 % of the time."""
+        return 0.01 * np.maximum(np.abs(one), np.abs(two))
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +132,8 @@ class EnergyDrift(Reducer):
 
     usual_name: ClassVar[str] = "energy_drift"
     unit: ClassVar[str] = "J"
+    is_log_if_wide: ClassVar[bool] = True
+    is_told_by_states: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,10 +155,16 @@ class LargestExponent(Reducer):
 
     usual_name: ClassVar[str] = "largest_exponent"
     unit: ClassVar[str] = "1/s"
+    needs_one_tolerance: ClassVar[bool] = True
+
+    @staticmethod
+    def largest_difference(one: Floats, two: Floats) -> float:
+        """Return a tenth of the largest exponent."""
+        return 0.1 * float(np.nanmax(np.abs(one), initial=0.0))
 
 
 REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, LargestExponent)
-"""Those that the core computes."""
+"""Those that the core computes, in the order of its arguments."""
 
 
 def __dir__() -> list[str]:

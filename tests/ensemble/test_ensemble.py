@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import itertools
 from concurrent.futures import ThreadPoolExecutor
+from inspect import signature
 
 import numpy as np
 import pendcore as pc
 import pytest
 from members_and_runs import BOOK, assert_runs, starts
+from pendcore._ensemble.request import OPTIONS
+from pendcore._ensemble.whole_run import Execution
 
 E = pc.effects
 UPRIGHT = pc.events.LinkAngle(2, -np.pi / 2, every_turn=True)
@@ -109,6 +112,13 @@ def test_a_member_that_was_not_run_says_so():
     assert found.ending == "time_limit"
     assert found.status[4] == "not_run"
     assert found.message(4).startswith("was not run: ")
+
+
+def test_what_does_not_change_members_has_one_list():
+    own = list(signature(pc.ensemble).parameters.values())
+    begin = [one.name for one in own].index("workers")
+    assert {one.name: one.default for one in own[begin:]} == Execution()._asdict()
+    assert pc.ensemble(BOOK, (0, 1), [1.0, 1.0]).request.options.keys() == OPTIONS
 
 
 class OwnReducer(pc.reducers.Reducer):

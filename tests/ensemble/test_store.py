@@ -9,12 +9,16 @@ import signal
 import subprocess
 import sys
 import time
+from _thread import interrupt_main
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from threading import Timer
 
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore._ensemble.run import run_members
 from stored_ensembles import (
     ASKED,
     BOOK,
@@ -104,6 +108,38 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     found = pc.ensemble(BOOK, q0=STARTS, store=killed, t_span=(0, 2000), on_failure="ignore")
     assert "not_run" not in found.counts()
     assert contents(killed) == contents(whole)
+
+
+SLOW = {
+    "scene": pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * 40),
+    "q0": np.full((16, 40), 0.3),
+    "t_span": (0, 50),
+    "method": "dop853",
+    "on_failure": "ignore",
+}
+"""Before its first chunk, the members that tell how large a chunk should be take a while."""
+
+
+@pytest.mark.parametrize("by", ["store", "executor"])
+def test_ctrl_c_before_the_first_chunk_ends_the_run(by, tmp_path, monkeypatch):
+    def interrupted(*given):
+        Timer(0.1, interrupt_main).start()
+        return run_members(*given)
+
+    monkeypatch.setattr("pendcore._ensemble.blocks.run_members", interrupted)
+    path = tmp_path / "it.zarr"
+    with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt) as raised:
+        pc.ensemble(**SLOW, **{"store": path} if by == "store" else {"executor": pool})
+    assert raised.value.ensemble.ending == "interrupted"
+    assert raised.value.ensemble.counts() == {"not_run": 16}
+    assert not path.exists()
+
+
+def test_a_time_limit_holds_before_the_first_chunk(tmp_path):
+    found = pc.ensemble(**SLOW, store=tmp_path / "it.zarr", time_limit=1e-3)
+    assert found.ending == "time_limit"
+    assert found.counts() == {"not_run": 16}
+    assert not (tmp_path / "it.zarr").exists()
 
 
 def test_an_empty_folder_becomes_a_store(tmp_path, stored):

@@ -43,7 +43,7 @@ def test_a_coarse_run_is_not_resolved_at_its_own_fault():
 def test_the_second_ensemble_has_another_method_and_other_bits():
     scene = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
     found = pc.ensemble(scene, q0=plane(2), t_span=(0, 1), vary={"gravity": [9.0, 8.0]}, rtol=1e-6)
-    members, request = second(found.members, found.request)
+    members, request = second(found)
     first = pc.simulate(scene, q0=plane(2)[0, 0], t_span=(0, 1), rtol=1e-6).method
     assert request.options["method"].partition("-")[0] != first.partition("-")[0]
     assert request.options["rtol"] == pytest.approx(1e-8)
@@ -56,11 +56,11 @@ def test_the_second_ensemble_has_another_method_and_other_bits():
 
 def test_the_second_ensemble_keeps_series_that_find_events():
     found = pc.ensemble(BOOK, q0=plane(2), t_span=(0, 1), **FIRST)
-    _, request = second(found.members, found.request)
+    _, request = second(found)
     assert request.options["method"] == pc.simulate(BOOK, q0=plane(2)[0, 0], t_span=(0, 1)).method
     assert request.options["rtol"] == pytest.approx(0.01 * found.request.options["rtol"])
-    tight = found.request.with_options(rtol=1e-14, atol=1e-14)  # nothing is tighter
-    _, request = second(found.members, tight)
+    found.request = found.request.with_options(rtol=1e-14, atol=1e-14)  # nothing is tighter
+    _, request = second(found)
     assert request.options["method"].partition("-")[0] != "taylor"
 
 
@@ -73,6 +73,44 @@ def test_events_are_compared_by_their_times():
     assert found.resolved(other, name="q").all()
     with pytest.raises(ValueError, match=r"name = 'p': must be one of 'first_event', 'q', 'qd'"):
         found.resolved(other, name="p")
+
+
+@pytest.mark.parametrize(
+    "effect", [pc.effects.JointStop(1, range=(0.5, 2.5)), pc.effects.Lock(1, angle=1.0)]
+)
+def test_scenes_that_bound_the_start_are_resolved(effect):
+    scene = BOOK.replace(effects=[effect])
+    starts = [[0.0, 1.0], [np.nan, 1.0], [1.0, 1.0]]  # two are refused
+    found = pc.ensemble(scene, (0, 1), starts, on_failure="ignore")
+    assert found.resolved().tolist() == [False, False, True]
+    none = pc.ensemble(scene, (0, 1), starts[:2], on_failure="ignore")
+    assert none.resolved().tolist() == [False, False]
+
+
+def test_only_the_same_request_confirms_members():
+    asked = {"scene": BOOK, "t_span": (0, 1), "q0": np.ones((4, 2))}
+    chain = BOOK.replace(links=[*BOOK.links, pc.Link(mass=1.0, length=1.0)])
+    times = asked | {"keep": "times", "t_eval": [0.2, 0.5]}
+    for one, changed, told in (
+        (asked, {"q0": [1.0, 1.0]}, r"shape = \(\): must be \(4,\): found.second\(\) makes"),
+        (asked, {"scene": chain, "q0": np.ones((4, 3))}, "number of links = 3: must be 2"),
+        (asked, {"t_span": (0, 2)}, r"t_span = \(0.0, 2.0\): must be \(0.0, 1.0\)"),
+        (times, {"t_eval": [0.2, 0.6]}, r"t_eval = \[0.2, 0.6\]: must be \[0.2, 0.5\]"),
+        (asked, FIRST, "reducers = {'first_event': .*}: must be {}"),
+    ):
+        found, other = pc.ensemble(**one), pc.ensemble(**(one | changed))
+        with pytest.raises(ValueError, match=f"^other: {told}"):
+            found.resolved(other)
+    found = pc.ensemble(**asked, **FIRST)
+    with pytest.raises(TypeError, match="other: is of type Solution: must be an ensemble"):
+        found.resolved(found.member(0))
+    for within, name, error, told in (
+        ("x", None, TypeError, "within = 'x': must be a real number"),
+        (np.nan, "q", ValueError, r"within = nan: must be >= 0 \(rad\)"),
+        (-1, None, ValueError, r"within = -1: must be >= 0 \(s\)"),
+    ):
+        with pytest.raises(error, match=told):
+            found.resolved(name=name, within=within)
 
 
 def test_energy_forbids_what_does_not_happen():

@@ -14,7 +14,7 @@ from pendcore import _core
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import members_of
 from pendcore._ensemble.request import Request
-from pendcore._ensemble.whole_run import run_ensemble
+from pendcore._ensemble.whole_run import Execution, run_ensemble
 from pendcore._messages.arguments import Floats, numbers, text, time_span
 from pendcore._messages.progress import Progress
 from pendcore._messages.warning import warn
@@ -24,7 +24,8 @@ from pendcore.options import RUN_DEFAULTS, OnFailure
 from pendcore.reducers import REDUCERS, Reducer
 
 Keep = str | Reducer | Mapping[str, Reducer]
-_TAKEN = ("status", "t_reached", "q", "qd", "q0", "qd0", "link", "time", "extreme", "component")
+_TAKEN = {"status", "t_reached", "q", "qd", "q0", "qd0", "link", "time"}
+_TAKEN |= {axis for kind in REDUCERS for axis in kind.labels(1)}
 _REDUCERS = ", ".join(f"pc.reducers.{one.__name__}" for one in REDUCERS)
 _KEEPS = f'"end", "times", or a reducer or a dictionary of reducers: {_REDUCERS}'
 
@@ -90,7 +91,8 @@ def ensemble(
         The number of members in a chunk. Default: so many that a chunk takes about 2 s. A store
         that is there keeps its own.
     time_limit : float, optional
-        s, for the whole ensemble; what is not run by then has the status ``"not_run"``.
+        s, for the whole ensemble; what is not run by then has the status ``"not_run"``. If it is
+        too short for the few members whose work tells the default of ``chunk``, no store is made.
     on_failure : {"warn", "raise", "ignore"}
         What to do if members fail.
     progress : bool or callable, optional
@@ -137,11 +139,8 @@ def ensemble(
     }  # fmt: skip
     reducers = _reducers(keep)
     request = Request(time_span(t_span), _times(keep, t_eval), reducers, options)
-    of_the_whole = {
-        "workers": workers, "executor": executor, "store": store, "chunk": chunk,
-        "time_limit": time_limit, "on_failure": on_failure, "progress": progress,
-    }  # fmt: skip
-    return run_ensemble(members, request, of_the_whole)
+    how = Execution(workers, executor, store, chunk, time_limit, on_failure, progress)
+    return run_ensemble(members, request, how)
 
 
 def _warn_of_degrees(q0: Floats) -> None:

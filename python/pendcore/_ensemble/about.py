@@ -10,7 +10,7 @@ import numpy as np
 from pendcore import _core
 from pendcore._cases.case import Case, refuse_functions
 from pendcore._cases.case_file import case_from_text
-from pendcore._ensemble.request import Request
+from pendcore._ensemble.request import OPTIONS, Request
 from pendcore._messages.arguments import Floats
 from pendcore._messages.warning import silence
 from pendcore._scene.scene import Scene, check_parameter_names
@@ -19,8 +19,6 @@ from pendcore.reducers import REDUCERS, FirstEvent
 VERSION, CASE, KEEP, VARY = "pendcore", "case", "keep", "vary"
 SHAPE, BLOCK = "shape", "block_shape"
 """The names of what is told."""
-_OPTIONS = {"method", "rtol", "atol", "max_steps", "max_step"}
-"""Those that every request has."""
 _KINDS: dict[str, Any] = {kind.__name__: kind for kind in REDUCERS}
 
 
@@ -60,8 +58,9 @@ def read_about(told: Mapping[str, Any], t_eval: Floats | None) -> tuple[Scene, R
         case = case_from_text(told[CASE], CASE)
     options = dict(case.options)
     events = options.pop("events", ())
-    if options.keys() != _OPTIONS:
-        raise ValueError(f"{CASE}: [run] must have {', '.join(sorted(_OPTIONS))}, and no others")
+    if options.keys() | {"events"} != OPTIONS:
+        known = ", ".join(sorted(OPTIONS - {"events"}))
+        raise ValueError(f"{CASE}: [run] must have {known}, and no others")
     try:
         kinds = {name: _KINDS[one[0]] for name, one in told[KEEP].items()}
         first = len(events) - [*kinds.values()].count(FirstEvent)

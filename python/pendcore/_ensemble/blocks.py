@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import inf, log2, prod
+from math import log2, prod
 
 import numpy as np
 
+from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Index, Members
 from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import run_members
+from pendcore._messages.handed_over import raise_with
 
 Block = tuple[slice, ...]
 
@@ -71,7 +73,7 @@ def size_of(block: Block) -> int:
 
 
 def blocks_of(shape: Index, count: int) -> Blocks:
-    """Return blocks of at most ``count`` members (at least 1), which are neighbours."""
+    """Return blocks of at most ``count`` members, but at least 1, which are neighbours."""
     sizes: list[int] = []
     for length in reversed(shape):
         sizes.append(max(1, min(length, count)))
@@ -79,10 +81,11 @@ def blocks_of(shape: Index, count: int) -> Blocks:
     return Blocks(shape, tuple(reversed(sizes)))
 
 
-def usual_block(members: Members, request: Request) -> int:
+def usual_block(members: Members, request: Request, time_limit: float) -> int:
     """Return how many members a block should have, from the work of a few of them.
 
-    The work is counted in steps, which are the same everywhere, and not in seconds.
+    The work is counted in steps, which are the same everywhere, and not in seconds. It is unknown,
+    and the number 0, if these few take longer than the limit. What stops them is raised.
     """
     count = members.count
     if count == 0:
@@ -90,7 +93,15 @@ def usual_block(members: Members, request: Request) -> int:
     few = np.unique(np.linspace(0, count - 1, PILOTS).astype(np.intp))
     steps = min(request.options["max_steps"], PILOT_STEPS)
     pilot = request.with_options(max_steps=steps)
-    found = run_members(members.selected(few), pilot, 0, inf, None)
+    found = run_members(members.selected(few), pilot, 0, time_limit, None)
+    if found.error is not None:
+        try:
+            nothing = request.empty(members.shape, len(members.scene.links))
+            raise_with(found.error, ensemble=Ensemble(members, request, nothing, found.ending))
+        finally:
+            del found  # the traceback of its error holds this frame, as in `run_blocks`
+    if found.ending != "finished":
+        return 0
     reached = np.abs(found.arrays["t_reached"] - request.t_span[0])
     share = np.nansum(reached) / (len(few) * abs(request.t_span[1] - request.t_span[0]) or 1.0)
     work = found.statistics["accepted"] / (len(few) * max(share, 1e-6))

@@ -55,22 +55,20 @@ def run_blocks(
     store: Store | None,
     executor: Any,
     workers: int,
-    time_limit: float,
+    until: float,
     report: Report,
 ) -> Outcome:
     """Run the blocks that are not done: side by side by an executor, or else one by one.
 
-    A store takes their results, or else memory.
+    A store takes their results, or else memory. At ``until``, a time of `monotonic`, they end.
     """
-    kept: dict[str, Any] = {} if store is None else store.arrays
-    if store is None:
-        for one in request.variables(len(members.scene.links)):
-            kept[one.name] = one.empty(members.shape)
-    until, done, total = monotonic() + time_limit, 0, members.count
+    n = len(members.scene.links)
+    kept: Arrays = request.empty(members.shape, n) if store is None else store.arrays
+    done, total = 0, members.count
     statistics: Counter[str] = Counter()
     ending, error = "finished", None
 
-    def is_run(block: Block) -> None:
+    def count_as_done(block: Block) -> None:
         nonlocal done
         done += size_of(block)
         report(done / total)
@@ -78,7 +76,7 @@ def run_blocks(
     def left() -> Iterator[Block]:
         for block in blocks:
             if store is not None and store.is_done(block):
-                is_run(block)
+                count_as_done(block)
             else:
                 yield block
 
@@ -93,7 +91,7 @@ def run_blocks(
                 try:
                     raise found.error
                 finally:
-                    del found  # its exception holds this frame, and would wait for the collector
+                    del found  # the traceback of its error holds this frame
             if found.ending != "finished":
                 return
             yield block, found.arrays, found.statistics
@@ -118,7 +116,7 @@ def run_blocks(
                 else:
                     store.write(block, arrays)
                 statistics.update(counted)
-                is_run(block)
+                count_as_done(block)
         if done < total:
             ending = "time_limit"
         elif store is not None:
@@ -128,7 +126,7 @@ def run_blocks(
     try:
         return Outcome(kept, ending, dict(statistics), error)
     finally:
-        del error  # as above
+        del error  # its traceback holds this frame, which would wait for the collector
 
 
 def run_task(task: Task) -> Result:
@@ -143,7 +141,7 @@ def run_task(task: Task) -> Result:
         try:
             raise found.error
         finally:
-            del found  # as above
+            del found  # the traceback of its error holds this frame, as in `run_blocks`
     if task.store is None:
         return task.block, found.arrays, found.statistics
     variables = task.request.variables(len(task.members.scene.links))

@@ -255,14 +255,14 @@ class Ensemble:
         >>> short.status, short.rerun(max_steps=1000).status
         (array(['max_steps', 'finished'], dtype='<U14'), array(['finished'], dtype='<U14'))
         """
-        from pendcore._ensemble.whole_run import of_the_whole, run_ensemble
+        from pendcore._ensemble.whole_run import execution, run_ensemble
 
         own = [name for name in self.request.options if name != "events"]
         of_members = {name: options.pop(name) for name in own if name in options}
-        whole = of_the_whole("rerun", options, own)
+        how = execution("rerun", options, own)
         places = np.flatnonzero(~self.success)
         request = self.request.with_options(**of_members)
-        return run_ensemble(self.members.selected(places), request, whole)
+        return run_ensemble(self.members.selected(places), request, how)
 
     def second(self, **options: Any) -> Ensemble:
         """Run the same members once more, independently, to see which of them are resolved.
@@ -274,8 +274,7 @@ class Ensemble:
         Parameters
         ----------
         **options
-            ``workers``, ``executor``, ``store``, ``chunk``, ``time_limit``, ``on_failure`` and
-            ``progress``, as in `ensemble`.
+            As in `ensemble`, from ``workers`` on.
 
         Examples
         --------
@@ -284,10 +283,10 @@ class Ensemble:
         True
         """
         from pendcore._ensemble.trust import second
-        from pendcore._ensemble.whole_run import of_the_whole, run_ensemble
+        from pendcore._ensemble.whole_run import execution, run_ensemble
 
-        members, request = second(self.members, self.request)
-        return run_ensemble(members, request, of_the_whole("second", options))
+        how = execution("second", options)
+        return run_ensemble(*second(self), how)
 
     def resolved(
         self,
@@ -302,7 +301,8 @@ class Ensemble:
         Parameters
         ----------
         other : Ensemble, optional
-            The second one. Default: it is run now, see `second`.
+            The second one, of the same shape, links, times and reducers. Default: it is run now,
+            see `second`.
         name : str, optional
             A reducer, or ``"q"`` or ``"qd"``. Default: the first reducer, or ``"q"``. An energy
             drift counts as resolved where the angles at the end are.
@@ -310,6 +310,11 @@ class Ensemble:
             How far the two may differ. Default: 1 % of the time of an event, a tenth of the largest
             exponent, and else 0.1 rad or rad/s.
         progress : as in `ensemble`
+
+        Raises
+        ------
+        TypeError, ValueError
+            If ``other`` was asked for something else, or for a name or a limit that cannot be.
 
         Examples
         --------
@@ -321,9 +326,7 @@ class Ensemble:
         """
         from pendcore._ensemble.trust import resolved
 
-        if other is None:
-            other = self.second(on_failure="ignore", progress=progress)
-        return resolved(self, other, name, within)
+        return resolved(self, other, name, within, progress)
 
     def plot(
         self,

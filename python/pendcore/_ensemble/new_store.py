@@ -54,8 +54,11 @@ def in_words(size: int) -> str:
     return f"{size} bytes"
 
 
-def create(path: Path, members: Members, request: Request, chunk: int) -> None:
-    """Make a store without results. It appears under its name when it has all starts."""
+def create(path: Path, members: Members, request: Request, chunk: int, time_limit: float) -> bool:
+    """Make a store without results. It appears under its name when it has all starts.
+
+    There is none, and False, if the limit is too short to know how large a chunk should be.
+    """
     zarr = zarr_module()
     if path.exists() and (path.samefile(Path.cwd()) or path.is_mount()):
         raise OSError(
@@ -63,7 +66,10 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
         )
     told = about(members.scene, list(members.vary), request)  # says what cannot be saved
     require_space(path, bytes_of(members, request))
-    blocks = blocks_of(members.shape, chunk or usual_block(members, request))
+    count = chunk or usual_block(members, request, time_limit)
+    if not count:
+        return False
+    blocks = blocks_of(members.shape, count)
     require_few_blocks(blocks)
     axes = member_axes(members.shape)
     building = path.with_name(f"{path.name}.{uuid4().hex}.part")
@@ -94,6 +100,7 @@ def create(path: Path, members: Members, request: Request, chunk: int) -> None:
             _appear(building, path)
         finally:
             shutil.rmtree(building, ignore_errors=True)
+    return True
 
 
 def _appear(building: Path, path: Path) -> None:

@@ -11,9 +11,11 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore.events import Event
-from pendcore.reducers import FirstEvent, LargestExponent, Reducer
+from pendcore.reducers import FirstEvent, Reducer
 
 NOT_RUN: int = _core.member_statuses.index("not_run")
+OPTIONS = {"method", "rtol", "atol", "events", "max_steps", "max_step"}
+"""The options of `simulate` that every member is given."""
 
 
 class Variable(NamedTuple):
@@ -55,7 +57,7 @@ class Request:
     reducers : dict
         Name to reducer.
     options : dict
-        Those of `simulate`: method, rtol, atol, events, max_steps, max_step.
+        Those in ``OPTIONS``.
     """
 
     t_span: tuple[float, float]
@@ -73,10 +75,6 @@ class Request:
         """Return the number of a reducer's event among all events."""
         before = list(self.reducers.values())[: list(self.reducers).index(name)]
         return len(self.options["events"]) + sum(isinstance(x, FirstEvent) for x in before)
-
-    def has(self, kind: type[Reducer]) -> bool:
-        """Return whether there is a reducer of a kind."""
-        return any(isinstance(one, kind) for one in self.reducers.values())
 
     def with_options(self, **options: Any) -> Request:
         """Return the same with some options replaced."""
@@ -98,11 +96,15 @@ class Request:
             *(Variable(name, x.labels(n), x.unit) for name, x in self.reducers.items()),
         ]
 
+    def empty(self, shape: tuple[int, ...], n: int) -> dict[str, Any]:
+        """Return these arrays for members of a shape that were not run."""
+        return {one.name: one.empty(shape) for one in self.variables(n)}
+
     def check_reducers(self) -> None:
         """Raise an error for what a reducer cannot be used with."""
-        if self.has(LargestExponent):
+        for kind in {type(one) for one in self.reducers.values() if one.needs_one_tolerance}:
             for name in ("rtol", "atol"):
                 if np.ndim(self.options[name]) > 0:
                     raise TypeError(
-                        f"{name}: must be one number with pc.reducers.LargestExponent()"
+                        f"{name}: must be one number with pc.reducers.{kind.__name__}()"
                     )

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pendcore import _core
 from pendcore._ensemble.members import Members
 from pendcore._ensemble.request import Request
-from pendcore.reducers import EnergyDrift, Extremes, FirstEvent, LargestExponent, Reducer
+from pendcore.reducers import REDUCERS, FirstEvent, Reducer
 
 Arrays = Mapping[str, Any]
 """By the names of `Request.variables`, in memory or in a store."""
@@ -41,18 +41,17 @@ def run_members(
     variables = request.variables(n)
     arrays = {one.name: one.empty(shape) for one in variables if one.name not in ("q", "qd")}
     states = np.full((*shape, *times, 2 * n), np.nan)
-    events = request.events
-    first = np.full((*shape, len(events)), np.nan) if request.has(FirstEvent) else None
     given = request.options | {
         "store": "end" if request.t_eval is None else "times",
         "t_eval": request.t_eval,
-        "events": [event._as_pair() for event in events],
+        "events": [event._as_pair() for event in request.events],
     }
     arrays |= {"q": states[..., :n], "qd": states[..., n:]}
     kept: dict[type[Reducer], npt.NDArray[Any]] = {}
     for name, one in request.reducers.items():
-        if isinstance(one, FirstEvent) and first is not None:
-            arrays[name] = first[..., request.event_number(name)]
+        if isinstance(one, FirstEvent):  # the core finds the first of all events
+            first = np.full((*shape, len(request.events)), np.nan)
+            arrays[name] = kept.setdefault(FirstEvent, first)[..., request.event_number(name)]
         else:  # two of a kind are one
             arrays[name] = kept.setdefault(type(one), arrays[name])
     filled = {one.name: arrays[one.name] for one in variables}
@@ -60,8 +59,7 @@ def run_members(
         members.scene._compiled, shape, members.q0, members.qd0,
         list(members.vary), [values[..., np.newaxis] for values in members.vary.values()],
         *request.t_span, given, workers, time_limit, progress,
-        arrays["status"], arrays["t_reached"], states, first,
-        kept.get(Extremes), kept.get(EnergyDrift), kept.get(LargestExponent),
+        arrays["status"], arrays["t_reached"], states, *(kept.get(kind) for kind in REDUCERS),
     ))  # fmt: skip
 
 

@@ -192,15 +192,20 @@ def _zarr_array(path: Path, name: str, mode: str) -> Any:
 
 
 @contextmanager
-def store_for(path: Path, members: Members, request: Request, chunk: int) -> Iterator[Store]:
+def store_for(
+    path: Path, members: Members, request: Request, chunk: int, time_limit: float
+) -> Iterator[Store | None]:
     """Hold the store at a path, to go on with it, or a new one; nothing else may write into it.
 
-    ``chunk`` is the number of members in a block of a new store; 0 leaves it to their work.
+    ``chunk`` is the number of members in a block of a new store; 0 leaves it to their work. There
+    is none if the limit is too short to know that.
     """
     if path.exists() and not path.is_dir():
         raise FileExistsError(f"store = {str(path)!r}: is a file: choose another name")
-    if is_new := not path.exists() or not any(path.iterdir()):
-        create(path, members, request, chunk)
+    is_new = not path.exists() or not any(path.iterdir())
+    if is_new and not create(path, members, request, chunk, time_limit):
+        yield None
+        return
     with one_writer(path):
         yield opened(path, "r+") if is_new else continued(path, members, request)
 

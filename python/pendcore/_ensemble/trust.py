@@ -7,6 +7,7 @@ would take several times as long.
 
 from __future__ import annotations
 
+import reprlib
 from dataclasses import replace
 from typing import Any
 
@@ -19,26 +20,24 @@ from pendcore._accuracy.rounding import LAST_BITS, moved
 from pendcore._ensemble.ensemble import Ensemble
 from pendcore._ensemble.members import Members
 from pendcore._ensemble.request import Request
-from pendcore._messages.arguments import Floats
+from pendcore._messages.arguments import Floats, in_unit, number
+from pendcore._messages.progress import Progress
 from pendcore._run.call import Choice, Start, run, tightened
 from pendcore.methods import TIGHTEST
-from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent
+from pendcore.reducers import Reducer
 from pendcore.sampling import uniform
 
-ANGLE = 0.1
-"""rad and rad/s: states that are farther apart are not the same."""
-TIME = 0.01
-"""The share of its time by which an event may differ."""
-EXPONENT = 0.1
-"""The share of the largest exponent by which exponents may differ."""
 
-
-def second(members: Members, request: Request) -> tuple[Members, Request]:
+def second(found: Ensemble) -> tuple[Members, Request]:
     """Return members and request of the second ensemble."""
-    scene, (t_start, t_end) = members.scene, request.t_span
-    start = Start(scene, 0.0, 0.0, t_start, t_end)
+    members, request = found.members, found.request
+    some = np.argwhere(np.isfinite(found.t_reached))[:1]  # one that was run: its start is allowed
+    if not len(some):
+        return members, request  # there is nothing to confirm
+    scene, place = members.scene, tuple(some[0].tolist())
+    start = Start(members.scene_of(place), members.q0[place], members.qd0[place], *request.t_span)
     choice = Choice(request.options["method"], request.options["rtol"], request.options["atol"])
-    method = run(start._replace(t_end=t_start), choice, store="end").method
+    method = run(start._replace(t_end=start.t_start), choice, store="end").method
     choice = tightened(choice, TIGHTER[0], TIGHTEST)
     is_tighter = bool(np.max(choice.rtol) <= 0.1 * np.min(request.options["rtol"]))
     is_series = method.partition("-")[0] == "taylor"
@@ -52,7 +51,7 @@ def second(members: Members, request: Request) -> tuple[Members, Request]:
     bounded = any(effect.description.bounds_joint for effect in scene.effects)
     near = replace(
         members,
-        scene=moved(start, 0).scene,
+        scene=moved(start._replace(scene=scene), 0).scene,
         q0=members.q0 if bounded else _moved(members.q0, 1, np.maximum(1.0, np.abs(members.q0))),
         vary={
             name: _moved(values, 2 + k, np.abs(values))
@@ -69,7 +68,11 @@ def _moved(values: Floats, seed: int, scale: Floats) -> Floats:
 
 
 def resolved(
-    found: Ensemble, other: Ensemble, name: str | None, within: float | None
+    found: Ensemble,
+    other: Ensemble | None,
+    name: str | None,
+    within: float | None,
+    progress: Progress,
 ) -> npt.NDArray[np.bool_]:
     """Return which members agree; see `Ensemble.resolved`."""
     reducers = found.request.reducers
@@ -78,19 +81,42 @@ def resolved(
     if name not in reducers and name not in ("q", "qd"):
         known = ", ".join(map(repr, (*reducers, "q", "qd")))
         raise ValueError(f"name = {name!r}: must be one of {known}")
-    kind = type(reducers[name]) if name in reducers else None
-    if kind is EnergyDrift:  # that of another run is another one: the states tell
-        name, kind = "q", None
+    if name in reducers and reducers[name].is_told_by_states:
+        name = "q"
+    kind = reducers.get(name, Reducer)
+    if within is not None and not number("within", within, "") >= 0:
+        unit = getattr(kind, "unit", "rad" if name == "q" else "rad/s")
+        raise ValueError(f"within = {within}: must be >= 0{in_unit(unit)}")
+    if other is None:
+        other = found.second(on_failure="ignore", progress=progress)
+    _require_same_request(found, other)
     one, two = (np.asarray(x.arrays[name][...]) for x in (found, other))
-    limit: Any = within
-    if within is None and kind is FirstEvent:
-        limit = TIME * np.maximum(np.abs(one), np.abs(two))
-    elif within is None and kind is LargestExponent:
-        limit = EXPONENT * np.nanmax(np.abs(one), initial=0.0)
-    elif within is None:
-        limit = ANGLE
+    limit = kind.largest_difference(one, two) if within is None else within
     with np.errstate(invalid="ignore"):
         agree = (np.abs(one - two) <= limit) | (np.isnan(one) & np.isnan(two))
     axes = tuple(range(len(found.shape), one.ndim))
     told: npt.NDArray[np.bool_] = agree.all(axis=axes) & found.success & other.success
     return told
+
+
+def _require_same_request(found: Ensemble, other: Ensemble) -> None:
+    """Raise an error for a second ensemble that cannot confirm the first."""
+    remedy = "found.second() makes such a one"
+    if not isinstance(other, Ensemble):
+        raise TypeError(f"other: is of type {type(other).__name__}: must be an ensemble: {remedy}")
+
+    def asked(one: Ensemble) -> dict[str, Any]:
+        times = one.request.t_eval
+        return {
+            "shape": one.shape,
+            "number of links": len(one.members.scene.links),
+            "t_span": one.request.t_span,
+            "t_eval": None if times is None else times.tolist(),
+            "reducers": one.request.reducers,
+        }
+
+    wanted = asked(found)
+    for what, value in asked(other).items():
+        if value != wanted[what]:
+            given, must = (reprlib.repr(x) for x in (value, wanted[what]))
+            raise ValueError(f"other: {what} = {given}: must be {must}: {remedy}")

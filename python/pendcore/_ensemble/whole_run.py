@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from time import monotonic
+from typing import Any, NamedTuple
 
 from pendcore._ensemble.blocks import blocks_of, usual_block
 from pendcore._ensemble.distribution import run_blocks
@@ -16,43 +18,56 @@ from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
 from pendcore._messages.arguments import require_known, time_limit_of, whole_number
 from pendcore._messages.handed_over import hand_over, raise_with
-from pendcore._messages.progress import reporting
+from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import PendcoreWarning, warn
 from pendcore._run.run_error import REMEDY, require_on_failure
-
-_OF_THE_WHOLE: dict[str, Any] = {
-    **dict.fromkeys(("workers", "executor", "store", "chunk", "time_limit", "progress")),
-    "on_failure": "warn",
-}
+from pendcore.options import OnFailure
 
 
-def of_the_whole(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> dict[str, Any]:
-    """Return all options of the whole; one that is unknown is refused."""
-    require_known(owner, given, [*others, *_OF_THE_WHOLE])
-    return _OF_THE_WHOLE | given
+class Execution(NamedTuple):
+    """Who runs the members, for how long, and where the results go, which changes no bit of them.
+
+    The fields are the parameters of `ensemble` from ``workers`` on.
+    """
+
+    workers: int | None = None
+    executor: Any = None
+    store: str | os.PathLike[str] | None = None
+    chunk: int | None = None
+    time_limit: float | None = None
+    on_failure: OnFailure = "warn"
+    progress: Progress = None
 
 
-def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> Ensemble:
-    """Run members; ``given`` has the options of the whole."""
-    require_on_failure(given["on_failure"])
+def execution(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> Execution:
+    """Return the execution with these fields; a name that is none of them is refused."""
+    require_known(owner, given, [*others, *Execution._fields])
+    return Execution(**given)
+
+
+def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble:
+    """Run members; arguments are checked before the first of them."""
+    require_on_failure(how.on_failure)
     request.check_reducers()
-    workers = _at_least_1("workers", given["workers"], "threads")
-    chunk = _at_least_1("chunk", given["chunk"], "members")
-    limit = time_limit_of(given["time_limit"])
-    executor, path = given["executor"], given["store"]
+    workers = _at_least_1("workers", how.workers, "threads")
+    chunk = _at_least_1("chunk", how.chunk, "members")
+    limit = time_limit_of(how.time_limit)
+    until = monotonic() + limit
+    executor, path = how.executor, how.store
     if chunk and executor is None and path is None:
         raise TypeError("chunk: counts only with a store or an executor")
     what = f"running {members.count} members"
     if path is not None:
         what += f" into {path}, up to {in_words(bytes_of(members, request))}"
-    with reporting(given["progress"], what, members.count, "members") as report:
-        how = executor, workers, limit, report
+    with reporting(how.progress, what, members.count, "members") as report:
+        by = executor, workers, until, report
         if path is not None:
-            with store_for(Path(path), members, request, chunk) as store:
-                found = run_blocks(members, request, store.blocks, store, *how)
+            with store_for(Path(path), members, request, chunk, limit) as store:
+                blocks = blocks_of(members.shape, 1) if store is None else store.blocks
+                found = run_blocks(members, request, blocks, store, *by)
         elif executor is not None:
-            blocks = blocks_of(members.shape, chunk or usual_block(members, request))
-            found = run_blocks(members, request, blocks, None, *how)
+            blocks = blocks_of(members.shape, chunk or usual_block(members, request, limit))
+            found = run_blocks(members, request, blocks, None, *by)
         else:
             found = run_members(members, request, workers, limit, report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
@@ -60,7 +75,7 @@ def run_ensemble(members: Members, request: Request, given: dict[str, Any]) -> E
         raise_with(found.error, ensemble=result)
     finally:
         del found  # the traceback of its error holds this frame: it would wait for the collector
-    return _checked(result, given["on_failure"])
+    return _checked(result, how.on_failure)
 
 
 def _at_least_1(name: str, value: Any, unit: str) -> int:

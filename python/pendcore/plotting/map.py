@@ -17,7 +17,6 @@ from pendcore.plotting.axes import (
     whole_names,
 )
 from pendcore.plotting.style import RESOLVED, UNRESOLVED, as_drawn
-from pendcore.reducers import EnergyDrift, FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
@@ -86,8 +85,8 @@ def shown_of(found: Ensemble, what: str | None) -> Shown:
         if reducer.labels(1):
             raise ValueError(f"what = {what!r}: has several numbers for each member: draw them")
         label = as_drawn(f"{what.replace('_', ' ')} ({reducer.unit})")
-        may_be_log = isinstance(reducer, FirstEvent | EnergyDrift)
-        return Shown(label, found[what], may_be_log and is_wide(found[what]))
+        is_log = reducer.is_log_if_wide and is_wide(found[what])
+        return Shown(label, found[what], is_log)
     if found.request.t_eval is not None:
         raise ValueError(
             'keep="times" keeps states at several times, which are not one number for each member: '

@@ -18,7 +18,7 @@ from pendcore.cli.map.table import MapAxis, MapTable, read_map_table
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.messages import Floats
 from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
-from pendcore.reducers import EnergyDrift, FirstEvent, LargestExponent, Reducer
+from pendcore.reducers import REDUCERS, FirstEvent, Reducer
 
 HELP = "draw a number over a plane of starts or parameters, and which pixels are resolved"
 DESCRIPTION = "Run the case at every pixel of a map."
@@ -139,7 +139,7 @@ def _reducer(show: str, case: Case) -> Reducer | None:
         if not events:
             raise UsageError('show = "first_event": the case has no [[event]]')
         return FirstEvent(events[0])
-    kinds = {one.usual_name: one for one in (EnergyDrift, LargestExponent)}
+    kinds = {x.usual_name: x for x in REDUCERS if x is not FirstEvent and not x.labels(1)}
     if show in kinds:
         return kinds[show]()
     if not re.fullmatch(r"qd?\[\d+\]", show):
@@ -258,7 +258,7 @@ def _save_figure(
     from matplotlib.figure import Figure
 
     unit = reducer.unit if reducer else "rad" if table.show.startswith("q[") else "rad/s"
-    is_log = isinstance(reducer, FirstEvent | EnergyDrift) and is_wide(pixels.values)
+    is_log = bool(reducer and reducer.is_log_if_wide) and is_wide(pixels.values)
     shown = Shown(f"{table.show.replace('_', ' ')} ({unit})", pixels.values, is_log)
     axes = new_axes(1 if args.no_trust else 2, Figure)
     mask = None if args.no_trust else pixels.resolved
