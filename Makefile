@@ -158,6 +158,9 @@ lowest: $(DONE)/venv  ## the lowest versions that pyproject.toml names: installe
 	$(PIP_INSTALL) --no-deps --no-build-isolation .
 	MPLBACKEND=Agg pytest -n auto --values 1 -W ignore::DeprecationWarning $(TRIED_WITH_LOWEST)
 
+# $(call require_one_of,TARGET,VARIABLE,WORDS) stops unless the variable is one word, and among these.
+require_one_of = @$(if $(filter-out 1,$(words $($(2))))$(filter-out $(3),$($(2))),$(error make $(1) $(2)=$($(2)): $(2) is one of $(3)))true
+
 # The programs that write tables and figures of pages, and what they need; most need what tests do.
 PAGES := long_runs horizon flip_map asked_errors default_method book_speed film
 NEEDED_BY_book_speed := bench
@@ -168,7 +171,7 @@ write: known-page $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(PAGE)),test)-requ
 	MPLBACKEND=Agg python docs/generators/$(PAGE).py
 
 known-page:
-	@$(if $(filter-out 1,$(words $(PAGE) $(filter-out $(PAGES),$(PAGE)))),$(error make write PAGE=$(PAGE): PAGE is one of $(PAGES)))true
+	$(call require_one_of,write,PAGE,$(PAGES))
 
 # Random attacks, by the thousand.
 CAMPAIGNS := fuzz readers errors mutants
@@ -179,7 +182,7 @@ campaign: known-campaign $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(OF)),test)
 	$(CAMPAIGN_$(OF))
 
 known-campaign:
-	@$(if $(filter-out 1,$(words $(OF) $(filter-out $(CAMPAIGNS),$(OF)))),$(error make campaign OF=$(OF): OF is one of $(CAMPAIGNS)))true
+	$(call require_one_of,campaign,OF,$(CAMPAIGNS))
 
 # Random cases; 100,000 and more write the page.
 CASES ?= 100000

@@ -40,7 +40,8 @@ from pendcore._run.energy import Energy, Ledger
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.largest_reactions import LargestReaction
 from pendcore._run.run_error import RunError
-from pendcore._run.solution import Solution, Statistics
+from pendcore._run.solution import Solution
+from pendcore._run.statistics import Statistics
 from pendcore._scene.angles import angles_from_vertical, angles_to_vertical
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Mobility, Scene

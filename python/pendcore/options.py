@@ -68,7 +68,7 @@ class RunOption(NamedTuple):
     type : str
         What docstrings say may be given; empty where it is the annotation.
     unit, range : str
-        Of a number; either may be empty.
+        The unit and the allowed range of a number; either may be empty.
     chosen_for_error : bool
         Whether ``simulate(error=...)`` chooses it.
     limits_every_method : bool

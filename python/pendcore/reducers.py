@@ -32,7 +32,7 @@ class Reducer:
     needs_one_tolerance: ClassVar[bool] = False
     """Whether ``rtol`` and ``atol`` must be one number each, for all components."""
     is_told_by_states: ClassVar[bool] = False
-    """Whether the angles tell if it is resolved, as it is another number in every run."""
+    """Whether the angles tell which members are resolved, as no two runs have the same value."""
 
     @staticmethod
     def labels(n: int) -> dict[str, list[str]]:

@@ -3,7 +3,7 @@
     python server.py      # each line of its input is an order, each of its output an exit code
 
 A short run takes half the time so. An order names the site of the package, the files and the tests
-in them (a file whose tests are not named runs whole), and the arguments of pytest.
+in them (a file that is named itself runs whole), and the arguments of pytest.
 """
 
 from __future__ import annotations
@@ -37,7 +37,6 @@ class Chosen:
 
     def __init__(self, tests: Iterable[str], seconds: dict[str, float]) -> None:
         self.tests = {*tests}
-        self.files = {test.partition("::")[0] for test in self.tests if "::" in test}
         self.seconds = seconds
 
     @pytest.hookimpl(trylast=True)
@@ -46,7 +45,7 @@ class Chosen:
         items.sort(key=lambda item: self.seconds.get(base(item.nodeid), UNKNOWN))
 
     def wants(self, name: str) -> bool:
-        return base(name) in self.tests or name.partition("::")[0] not in self.files
+        return not self.tests.isdisjoint((base(name), name.partition("::")[0]))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         before = self.seconds.get(base(report.nodeid), 0.0)

@@ -1,4 +1,4 @@
-// What is given to pendcore's programs, as its scene.
+// Makes a scene of what pendcore's programs are given.
 #pragma once
 
 #include <array>

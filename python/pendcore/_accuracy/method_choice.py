@@ -14,7 +14,7 @@ from math import floor, log10
 import numpy as np
 
 from pendcore._run.call import Start, supports
-from pendcore._run.solution import Statistics
+from pendcore._run.statistics import Statistics
 from pendcore._run.work import series_work
 from pendcore.methods import TIGHTEST, known_methods, most_accurate, pair_of
 

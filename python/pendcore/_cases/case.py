@@ -15,9 +15,10 @@ import numpy.typing as npt
 
 from pendcore._messages.arguments import numbers, text, vector
 from pendcore._run.solution import Solution
-from pendcore._scene.effect_class import OwnEffect, Part
+from pendcore._scene.effect_class import Part
+from pendcore._scene.parametrized import OfFunction
 from pendcore._scene.scene import Scene
-from pendcore.events import Event, Function, events_asked_for
+from pendcore.events import Event, events_asked_for
 from pendcore.options import RUN_DEFAULTS, OnFailure
 
 
@@ -199,7 +200,7 @@ class Case:
 def refuse_functions(scene: Scene, events: Iterable[Event], done: str, remedy: str = "") -> None:
     """Raise a TypeError for an effect or an event that is a function: it cannot be ``done``."""
     for one in (*scene.effects, *events):
-        if isinstance(one, OwnEffect | Function):
+        if isinstance(one, OfFunction):
             raise one.cannot_be(done, remedy)
 
 

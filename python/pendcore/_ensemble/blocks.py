@@ -95,11 +95,9 @@ def usual_block(members: Members, request: Request, time_limit: float) -> int:
     pilot = request.with_options(max_steps=steps)
     found = run_members(members.selected(few), pilot, 0, time_limit, None)
     if found.error is not None:
-        try:
-            nothing = request.empty(members.shape, len(members.scene.links))
-            raise_with(found.error, ensemble=Ensemble(members, request, nothing, found.ending))
-        finally:
-            del found  # the traceback of its error holds this frame, as in `run_blocks`
+        nothing = request.empty(members.shape, len(members.scene.links))
+        not_run = Ensemble(members, request, nothing, found.ending)
+        raise_with(found.take_error(), ensemble=not_run)
     if found.ending != "finished":
         return 0
     reached = np.abs(found.arrays["t_reached"] - request.t_span[0])

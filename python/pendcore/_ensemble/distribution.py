@@ -23,6 +23,7 @@ from pendcore._ensemble.members import Members
 from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import Arrays, Outcome, run_members
 from pendcore._ensemble.store import Store, write_block
+from pendcore._messages.handed_over import raise_with
 
 Report = Callable[[float], object]
 Result = tuple[Block, Arrays | None, dict[str, Any]]
@@ -87,11 +88,7 @@ def run_blocks(
                 return
             part = _part(report, done / total, size_of(block) / total)
             found = run_members(members.block(block), request, workers, seconds, part)
-            if found.error is not None:
-                try:
-                    raise found.error
-                finally:
-                    del found  # the traceback of its error holds this frame
+            raise_with(found.take_error())
             if found.ending != "finished":
                 return
             yield block, found.arrays, found.statistics
@@ -137,11 +134,7 @@ def run_task(task: Task) -> Result:
             f"{task.version}: install the same version everywhere"
         )
     found = run_members(task.members, task.request, task.workers, inf, None)
-    if found.error is not None:
-        try:
-            raise found.error
-        finally:
-            del found  # the traceback of its error holds this frame, as in `run_blocks`
+    raise_with(found.take_error())
     if task.store is None:
         return task.block, found.arrays, found.statistics
     variables = task.request.variables(len(task.members.scene.links))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,8 @@ SUMMED = ("nfev", "njev", "nlu", "accepted", "rejected")
 """The statistics that are sums over the members."""
 
 
-class Outcome(NamedTuple):
+@dataclass(slots=True)
+class Outcome:
     """What running members came to."""
 
     arrays: Arrays
@@ -29,7 +31,12 @@ class Outcome(NamedTuple):
     statistics: dict[str, Any]
     """Sums over the members."""
     error: BaseException | None
-    """The exception that broke it off."""
+    """The exception that broke it off, until it is taken."""
+
+    def take_error(self) -> BaseException | None:
+        """Return the exception and forget it, so that no frame in its traceback holds it."""
+        error, self.error = self.error, None
+        return error
 
 
 def run_members(

@@ -25,9 +25,10 @@ from pendcore.options import OnFailure
 
 
 class Execution(NamedTuple):
-    """Who runs the members, for how long, and where the results go, which changes no bit of them.
+    """How members are run: by whom, for how long, and where their results go.
 
-    The fields are the parameters of `ensemble` from ``workers`` on.
+    Its fields are the parameters of `ensemble` from ``workers`` on. None of them changes a bit of a
+    member.
     """
 
     workers: int | None = None
@@ -63,6 +64,7 @@ def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble
         by = executor, workers, until, report
         if path is not None:
             with store_for(Path(path), members, request, chunk, limit) as store:
+                # Without a store the limit is up, and no block is run, however small.
                 blocks = blocks_of(members.shape, 1) if store is None else store.blocks
                 found = run_blocks(members, request, blocks, store, *by)
         elif executor is not None:
@@ -71,10 +73,7 @@ def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble
         else:
             found = run_members(members, request, workers, limit, report)
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
-    try:
-        raise_with(found.error, ensemble=result)
-    finally:
-        del found  # the traceback of its error holds this frame: it would wait for the collector
+    raise_with(found.take_error(), ensemble=result)
     return _checked(result, how.on_failure)
 
 

@@ -16,7 +16,8 @@ from pendcore._messages.arguments import Floats, number, time_span
 from pendcore._messages.handed_over import raise_with
 from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import warn
-from pendcore._run.solution import Solution, Statistics
+from pendcore._run.solution import Solution
+from pendcore._run.statistics import Statistics
 from pendcore._scene.scene import Scene, require_scene
 from pendcore.options import RUN_DEFAULTS
 

@@ -43,7 +43,8 @@ def _simulated_anew(solution: Solution) -> Solution:
     asked = solution._run.arguments
     if solution._run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
         asked |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
-    start = Start(solution.scene, *(asked.pop(name) for name in Start._fields[1:]))
+    q0, qd0, t_start, t_end = (asked.pop(name) for name in ("q0", "qd0", "t_start", "t_end"))
+    start = Start(solution.scene, q0, qd0, t_start, t_end)
     whole = _attempts(solution)
     # A run that came to its end goes beyond its last attempt where everything rests. A run that
     # was broken off had begun another attempt, which is not repeated.

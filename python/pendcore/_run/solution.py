@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,8 +20,10 @@ from pendcore._run.accuracy import Accuracy
 from pendcore._run.energy import Energy, energy_over
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.largest_reactions import LargestReaction, largest_reactions
+from pendcore._run.statistics import Statistics
+from pendcore._scene.parametrized import OfFunction
 from pendcore._scene.scene import Scene
-from pendcore.events import Event, Found, FoundEvents, Function, event_of
+from pendcore.events import Event, Found, FoundEvents, event_of
 from pendcore.options import RUN_DEFAULTS, OnFailure
 
 if TYPE_CHECKING:
@@ -36,53 +38,6 @@ if TYPE_CHECKING:
     from pendcore._run.energy_drift import EnergyDrift
     from pendcore.page.notebook import NotebookPage
     from pendcore.plotting.plot import What
-
-
-class Statistics(NamedTuple):
-    """What a run took.
-
-    Attributes
-    ----------
-    nfev : int
-        Right-hand sides; for ``taylor`` series, each of which takes as long as many of them.
-    njev : int
-        Jacobians.
-    nlu : int
-        Factorisations.
-    accepted : int
-        Steps that were kept.
-    rejected : int
-        Steps that were tried again, shorter.
-    limited_by_tolerance : int
-        Accepted steps of the size that accuracy allowed.
-    limited_by_max_step : int
-        Accepted steps of the size of ``max_step``, or of a fixed step.
-    limited_by_break : int
-        Accepted steps that ended early, at the end of the run or where a law changes.
-    min_step, max_step : float
-        Sizes of the accepted steps, s, except those that ended early.
-    stiff : bool
-        Whether stability rather than accuracy limited the steps.
-
-    Examples
-    --------
-    >>> scene = pc.Scene.textbook()
-    >>> stats = pc.simulate(scene, (0, 1), 0.5, method="rk4", step=0.01).stats
-    >>> stats.accepted, stats.nfev
-    (100, 401)
-    """
-
-    nfev: int
-    njev: int
-    nlu: int
-    accepted: int
-    rejected: int
-    limited_by_tolerance: int
-    limited_by_max_step: int
-    limited_by_break: int
-    min_step: float
-    max_step: float
-    stiff: bool
 
 
 class Solution:
@@ -278,8 +233,8 @@ class Solution:
     @property
     def has_own_functions(self) -> bool:
         """Whether an effect or an event is a function of the user's, which no file can hold."""
-        acting = any(effect.description.is_function for effect in self.scene.effects)
-        return acting or any(isinstance(event, Function) for event in self.events_asked_for())
+        acting_and_found = (*self.scene.effects, *self.events_asked_for())
+        return any(isinstance(one, OfFunction) for one in acting_and_found)
 
     @property
     def stats(self) -> Statistics:

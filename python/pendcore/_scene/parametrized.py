@@ -16,7 +16,7 @@ _AN_OBJECT = {
 
 @dataclass(frozen=True, repr=False)
 class Parametrized:
-    """What is made of parameters: it cannot be changed, compares and hashes."""
+    """An object that is made of parameters: none can be changed, and equal ones make it equal."""
 
     __slots__ = ()
 

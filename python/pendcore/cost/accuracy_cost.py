@@ -137,7 +137,7 @@ class AccuracyCost:
         ax : Axes, optional
             Default: a new figure of pyplot's, which is not shown.
         y : {"time", "nfev"}
-            What is drawn upwards: the least time of a call, or right-hand sides.
+            The vertical axis shows the least time of a call, or the number of right-hand sides.
         **line_properties
             Passed on to matplotlib's ``Line2D``.
 

@@ -19,7 +19,7 @@ _QUICK = 200_000
 
 
 def html(solution: Solution) -> str:
-    """Return these lines as an HTML table, beside a drawing of the run."""
+    """Return the lines that `print` shows as an HTML table, beside a drawing of the run."""
     rows = table(rows_of(solution))
     dense = _with_dense_output(solution)
     if dense is None:

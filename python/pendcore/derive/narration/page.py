@@ -56,7 +56,8 @@ class Page:
     def _equation(self, lhs: Any, rhs: Any, number: str = "", erratum: str = "") -> Equation:
         """Return an equation; it keeps its number for two links, its remark for the textbook's."""
         remark = ERRATA.get(erratum or number, "") if self.is_textbook else ""
-        return Equation(lhs, rhs, (self.n == 2 and number) or None, remark, self.s)
+        shown = number if self.n == 2 and number else None
+        return Equation(lhs, rhs, shown, remark, self.s)
 
     def joint(self, joint: int) -> Formula:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
