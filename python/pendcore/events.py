@@ -229,6 +229,16 @@ def _occurrences(name: str, terminal: object) -> bool | int:
     return count
 
 
+def _function(name: str, given: object) -> object:
+    for attribute in ("terminal", "direction"):
+        if value := getattr(given, attribute, None):
+            raise TypeError(
+                f"{name}.{attribute} = {value!r}: is not read from the function: give it to the "
+                f"event, Function(f, {attribute}={value!r})"
+            )
+    return function(name, given)
+
+
 def _one_line(name: str, given: object) -> str:
     if not (isinstance(given, str) and given.isprintable()):
         raise TypeError(f"{name} = {given!r}: must be a text of one line")
@@ -245,7 +255,7 @@ _PLAIN: dict[str, Callable[[str, Any], object]] = {
     "every_turn": flag,
     "point": partial(numbers, unit="m", count=2),
     "normal": partial(numbers, unit="1", count=2),
-    "f": function,
+    "f": _function,
     "samples": whole_number,
     "max_step": partial(number, unit="s"),
 }

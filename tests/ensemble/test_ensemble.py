@@ -51,6 +51,8 @@ def test_the_first_event_of_each_member():
     assert 5 < np.isfinite(found["over"]).sum() < 30
     with pytest.raises(KeyError, match="no reducer is called 'under': 'over'"):
         found["under"]
+    with pytest.raises(KeyError, match=r"'over'; a member is found.member\(3\)"):
+        found[3]
 
 
 def test_members_fail_alone_and_are_rerun():

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from threading import Event
 from time import monotonic, sleep
 
 import numpy as np
@@ -165,6 +167,33 @@ def test_what_was_written_beside_a_store_that_has_just_gone_is_taken_back(tmp_pa
     monkeypatch.setattr(store_module, "named", gone_before_the_write)
     with pytest.raises(OSError, match=GONE):
         make(tmp_path / "a.zarr")
+    assert [one.name for one in tmp_path.iterdir()] == ["elsewhere.zarr"]
+
+
+def test_a_folder_that_a_worker_makes_anew_by_opening_a_store_is_taken_back(tmp_path, monkeypatch):
+    storage = pytest.importorskip("zarr.storage")
+    path, writable, named = (
+        tmp_path / "a.zarr",
+        storage.LocalStore.with_read_only,
+        store_module.named,
+    )
+    writing = Event()
+
+    @contextmanager
+    def in_a_worker(place):
+        with named(place):
+            writing.set()
+            yield
+
+    def gone_while_it_is_opened(store, read_only=False):
+        if writing.is_set() and path.exists():
+            move(path)
+        return writable(store, read_only)
+
+    monkeypatch.setattr(store_module, "named", in_a_worker)
+    monkeypatch.setattr(storage.LocalStore, "with_read_only", gone_while_it_is_opened)
+    with ThreadPoolExecutor(1) as pool, pytest.raises(OSError, match=GONE):
+        make(path, executor=pool)
     assert [one.name for one in tmp_path.iterdir()] == ["elsewhere.zarr"]
 
 

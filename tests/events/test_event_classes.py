@@ -73,6 +73,13 @@ def run(events):
     return pc.simulate(BOOK, (0, 1), 1, events=events)
 
 
+def as_for_scipy(t, q, qd):
+    return q[0]
+
+
+as_for_scipy.terminal = True
+
+
 BAD: dict[str, Any] = {
     "JointAngle: joint = 0: must be >= 1": lambda: ev.JointAngle(0, 1.0),
     "JointAngle: joint = 1.5: must be a whole": lambda: ev.JointAngle(1.5, 1.0),
@@ -86,6 +93,7 @@ BAD: dict[str, Any] = {
     "TipLine: point[1] = inf: must be": lambda: ev.TipLine((0, np.inf), (0, 1)),
     "TipLine: point: shape (3,): must": lambda: ev.TipLine((0, 1, 2), (0, 1)),
     "Function: f = 'f': must be a function of": lambda: ev.Function("f"),
+    "Function: f.terminal = True: is not read": lambda: ev.Function(as_for_scipy),
     "Function: samples = 0: must be 1 to": lambda: ev.Function(print, samples=0),
     "Function: max_step = 0.0: must be > 0": lambda: ev.Function(print, max_step=0),
     "RateZero: direction = 2: must be 1": lambda: ev.RateZero(joint=1, direction=2),

@@ -31,6 +31,21 @@ Quantity = Callable[[_core.Scene, Floats, Floats, Floats], Floats]
 class Ensemble:
     """The result of `ensemble`: arrays whose first axes are those of the members.
 
+    Its arrays are ``q`` and ``qd``, ``t_reached``, ``status``, ``success`` and ``failed``; those of
+    a reducer have its name, ``found["name"]``.
+
+    Attributes
+    ----------
+    arrays : mapping of str to array
+        The same arrays by name, as `save` writes them. Those of a store read from the disk when
+        they are indexed.
+    ending : {"finished", "time_limit", "interrupted"}
+        How the ensemble as a whole ended.
+    members, request
+        The scene with all starts and values, and what was asked of each member.
+    statistics : dict
+        The sums over the members of what their runs took, as in `Statistics`.
+
     Examples
     --------
     >>> masses = np.linspace(0.5, 1.5, 5)
@@ -106,7 +121,8 @@ class Ensemble:
         """Return what a reducer of ``keep`` found, (...)."""
         if name not in self.request.reducers:
             known = ", ".join(map(repr, self.request.reducers)) or "none were kept"
-            raise KeyError(f"no reducer is called {name!r}: {known}")
+            one = "" if isinstance(name, str) else f"; a member is found.member({name!r})"
+            raise KeyError(f"no reducer is called {name!r}: {known}{one}")
         return self._read(name)
 
     def _read(self, name: str) -> Floats:

@@ -162,6 +162,8 @@ def _take_back(place: Path, files: list[str]) -> None:
         with suppress(OSError):
             for folder in Path(name).parents:
                 (place / folder).rmdir()
+    with suppress(OSError):  # made anew when Zarr opened it, before any file
+        place.rmdir()
 
 
 def _files(zarr_arrays: dict[str, Any], block: Block) -> list[str]:

@@ -47,8 +47,20 @@ class Solution:
 
     Attributes
     ----------
+    t : ndarray, (n_t,)
+        Times of the accepted steps, or ``t_eval``, s.
+    q, qd : ndarray, (n_t, n)
+        Absolute angles, rad, and their rates, rad/s. ``y``, (2n, n_t), has both as SciPy does.
+    status, message, success : str, str, bool
+        How the run ended: in a word, in a sentence, and whether as it was asked to.
+    events : list of FoundEvents
+        What was found of each event asked for.
+    stats : Statistics
+        What the run took.
     scene : Scene
         What moved.
+    known_error : ErrorEstimate or None
+        The error at each time, where `simulate` or `estimate_error` has found it.
     accuracy : Accuracy or None
         What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
         and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
