@@ -7,20 +7,17 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+import sweeps
 from carried import is_refusal_of_series
 from hypothesis import settings
 from pendcore import _core
 from reference.trajectories import Trajectory, trajectory
-from sweeps import every, few
+from sweeps import every, few, random_examples
 
-VALUES = 5
+VALUES = 4
 """Values of each parameter that a reduced sweep meets."""
 NOT_REDUCED = "tests/documents/"
 """Tests of pages and of the code base are quick, and each page is a case."""
-
-# A busy machine is not a failure.
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -30,13 +27,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--share", type=int, default=1, help="run one test function of so many")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    sweeps.reduced = not config.getoption("full") and not any("::" in one for one in config.args)
+    # A busy machine is not a failure.
+    settings.register_profile("untimed", deadline=None, max_examples=random_examples(100))
+    settings.load_profile("untimed")
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Reduce sweeps, unless one test is asked for by name, or all tests are.
 
     Tests that build programs begin first, so that with several processes none of these runs on
     alone at the end.
     """
-    if not config.getoption("full") and not any("::" in name for name in config.args):
+    if sweeps.reduced:
         _reduce(config, items)
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.get_closest_marker("outside_build") is None)

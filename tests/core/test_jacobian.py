@@ -25,6 +25,7 @@ from reference.effects import Described, law
 from reference.newton_euler import Body
 from reference.random_rigs import DrawnRig, rigs
 from reference.rig import Rig
+from sweeps import random_examples
 
 TOLERANCE = 1e-12
 ROUNDING_OF_THE_REFERENCE = 1e-26  # that of its differences too, where a law has a corner
@@ -80,7 +81,7 @@ def check(drawn: DrawnRig, tolerance: float = TOLERANCE) -> None:
 
 
 def check_drawn(kinds: Sequence[str], n: int, examples: int, tolerance: float = TOLERANCE) -> None:
-    @settings(max_examples=examples, deadline=None)
+    @settings(max_examples=random_examples(examples), deadline=None)
     @given(rigs(kinds, st.just(n)))
     def check_one(drawn: DrawnRig) -> None:
         check(drawn, tolerance)

@@ -20,6 +20,7 @@ from fuzz.drawn_run import Drawn
 from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 from pendcore import _core
+from sweeps import random_examples
 
 METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
 
@@ -27,7 +28,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 
 
 @pytest.mark.parametrize("claim", [*ALWAYS, *SOMETIMES], ids=lambda claim: claim.__name__)
-@settings(derandomize=True, max_examples=60)
+@settings(derandomize=True, max_examples=random_examples(60))
 @given(run=any_runs(), data=st.data())
 def test_any_run_keeps_the_claims(claim: Claim, run: Drawn, data: st.DataObject) -> None:
     """A user's function may raise; the exception then brings the solution so far."""
@@ -80,7 +81,7 @@ def at_five_times(run: Drawn, **changes: object) -> np.ndarray:
     return sol(np.linspace(*run.t_span, 6))
 
 
-@settings(max_examples=150)
+@settings(max_examples=random_examples(150))
 @given(run=stopped_motions())
 def test_all_methods_agree_on_motions_with_stops(run: Drawn) -> None:
     """The motions are regular: started 1e-8 aside, they stay near, as none grazing a stop does."""

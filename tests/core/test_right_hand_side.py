@@ -20,6 +20,7 @@ from reference.arithmetic import DOUBLE, Arithmetic, multiple_precision
 from reference.newton_euler import Body, newton_euler, uniform_rod
 from reference.random_rigs import links
 from reference.rig import Rig
+from sweeps import random_examples
 
 TOLERANCE = 1e-12
 SIXTY = multiple_precision(60)
@@ -79,7 +80,7 @@ def test_one_link_and_two(n: int, data: st.DataObject) -> None:
     check_instant(data.draw(uneven_links(n)), data.draw(gravities), data.draw(states(n)))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=random_examples(50), deadline=None)
 @given(*[st.floats(-12, 12)] * 2, gravities, states(2))
 def test_mass_and_length_ratios_up_to_1e12(mass, length, gravity, state) -> None:
     rods = [uniform_rod(1.0, 1.0), uniform_rod(10**mass, 10**length)]
@@ -96,7 +97,7 @@ def test_the_corners_of_the_ratios_also_straight_and_folded(mass, length, q) -> 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 20])
 def test_the_mass_matrix_is_that_of_the_kinetic_energy(n: int) -> None:
-    @settings(max_examples=20 if n <= 10 else 3, deadline=None)
+    @settings(max_examples=random_examples(20 if n <= 10 else 3), deadline=None)
     @given(uneven_links(n), states(n))
     def check(bodies, state) -> None:
         rig = Rig(bodies=bodies, gravity=0.0, arithmetic=SIXTY)

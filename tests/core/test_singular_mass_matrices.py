@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from pendcore import effects as fx
+from sweeps import random_examples
 
 ROD, EMPTY = pc.Link(mass=1.0, length=1.0), pc.Link(mass=0.0, length=1.0)
 POINT = pc.Link.point_mass(mass=1.0, length=1.0)
@@ -130,7 +131,7 @@ def scenes(draw: st.DrawFn) -> tuple[list[pc.Link], list[Any]]:
 
 @pytest.mark.unsanitized  # the search for the smallest mass matrix is NumPy's
 @pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=random_examples(60), deadline=None)
 @given(scenes())
 def test_a_scene_is_refused_where_and_only_where_its_mass_matrix_is_singular(drawn) -> None:
     links, effects = drawn

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pendcore import _core
 from pendcore.effects import KINDS
+from sweeps import random_examples
 from symmetries import MIRRORED, Units, in_units, with_effects
 
 WITH_FRICTION = (*SMOOTH, "dry_joint_friction")
@@ -57,7 +58,7 @@ def test_other_units_of_mass_and_length_change_no_bit(method: str, run: Drawn, u
 
 
 @every_method
-@settings(max_examples=140)
+@settings(max_examples=random_examples(140))
 @given(run=motions(WITH_FRICTION) | stopped_motions(WITH_FRICTION), units=units)
 def test_other_units_of_mass_length_and_time_change_no_bit(method, run, units) -> None:
     """Nor do they change one of impacts, contact and the ledger.

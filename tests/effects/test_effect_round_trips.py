@@ -11,6 +11,7 @@ import pytest
 from drawn_effects import KINDS, made, scenes
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sweeps import random_examples
 
 pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 
@@ -33,7 +34,7 @@ def assert_comes_back(one):
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
 @given(data=st.data())
-@settings(max_examples=30)
+@settings(max_examples=random_examples(30))
 def test_an_effect_comes_back_from_its_repr_and_from_pickle(kind, data):
     assert_comes_back(data.draw(made(KINDS[kind], 3)))
 
@@ -44,7 +45,7 @@ def test_a_scene_comes_back_from_its_repr_and_from_pickle(scene):
 
 
 @given(scenes())
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=random_examples(30), deadline=None)
 def test_a_scene_and_its_run_come_back_and_move_the_same(scene):
     n = len(scene.links)
     state = (0.0, np.linspace(-1, 2, n), np.linspace(1, -1, n))

@@ -14,6 +14,7 @@ from reference.effects import law
 from reference.newton_euler import Body, uniform_rod
 from reference.random_rigs import address_of, between, links, polynomial
 from reference.rig import Rig
+from sweeps import random_examples
 from unit_rods import rod
 
 SINE = {"amplitude": 2, "angular_frequency": 1}
@@ -102,7 +103,7 @@ def test_an_effect_moves_a_scene_as_another_scene_moves(name: str) -> None:
     np.testing.assert_allclose(reactions[: len(others)], others, rtol=1e-12)
 
 
-@settings(max_examples=200)
+@settings(max_examples=random_examples(200))
 @given(*[between(-5, 5)] * 4, links())
 def test_drag_is_what_the_polynomials_of_a_linear_speed_integrate_to(wx, wy, angle, rate, link):
     """The formulas of the design, which split where the speed changes sign; the pivot moves."""

@@ -26,6 +26,7 @@ from reference.instant import Instant
 from reference.newton_euler import Body
 from reference.random_rigs import START, DrawnRig, rigs
 from reference.rig import Rig, balance
+from sweeps import random_examples
 
 TOLERANCE = 1e-12
 FORTY, FIFTY = multiple_precision(40), multiple_precision(50)
@@ -87,7 +88,7 @@ def test_every_kind_of_effect_has_a_law_in_the_reference() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=random_examples(30), deadline=None)
 @given(data=st.data())
 def test_an_effect_alone_and_on_a_moving_pivot(kind: str, data: st.DataObject) -> None:
     check_instant(data.draw(rigs([kind], short)))
@@ -95,7 +96,7 @@ def test_an_effect_alone_and_on_a_moving_pivot(kind: str, data: st.DataObject) -
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=random_examples(8), deadline=None)
 @given(data=st.data())
 def test_an_effect_alone_on_a_long_chain(kind: str, data: st.DataObject) -> None:
     check_instant(data.draw(rigs([kind], long)))
@@ -112,10 +113,12 @@ def test_an_effect_alone_on_a_long_chain(kind: str, data: st.DataObject) -> None
     ids=["all but locks", "all", "all on a long chain", "none"],
 )
 def test_effects_together(kinds: list[str], links: st.SearchStrategy[int], count: int) -> None:
-    settings(max_examples=count, deadline=None)(given(rigs(kinds, links))(check_instant))()
+    settings(max_examples=random_examples(count), deadline=None)(
+        given(rigs(kinds, links))(check_instant)
+    )()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=random_examples(30), deadline=None)
 @given(rigs(["rotor_inertia", "payload", "driven_pivot"], short | long))
 def test_the_mass_matrix_holds_rotors_and_the_payload(drawn: DrawnRig) -> None:
     bodies, gravity, described, (_, q, _) = drawn
@@ -214,7 +217,7 @@ def check_lagrange(drawn: DrawnRig) -> None:
 
 @pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [*KINDS, "all"])
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=random_examples(10), deadline=None)
 @given(data=st.data())
 def test_newton_and_euler_agree_with_lagrange_and_with_the_growth_of_the_energy(
     kind: str, data: st.DataObject

@@ -123,8 +123,13 @@ def hashes_in(text: str) -> dict[str, str]:
 
 @cache
 def built(build: str, *, contracted: bool) -> Path:
-    """Build what runs there, and return the folder; with contraction, the hashes alone."""
+    """Build what runs there, and return the folder; with contraction, the hashes alone.
+
+    The core in WebAssembly is that of `make page`, which is compiled once.
+    """
     folder = ROOT / "build/elsewhere" / (f"{build}-contracted" if contracted else build)
+    if build == WEBASSEMBLY:
+        folder = ROOT / "build/wasm"
     targets = ["trajectory_hash"]
     if not contracted:
         targets += ["check_fma", "pendcore_tests"]

@@ -17,7 +17,7 @@ import pytest
 from browser_cases import CASES, DAMPER, RODS, START, STARTS, scene_in_python
 
 HERE = Path(__file__).parent
-PACKAGE = HERE.parents[1] / "build/elsewhere/wasm32/package"
+PACKAGE = HERE.parents[1] / "build/wasm/package"
 AT = [0.1, 1.7, 3.9]
 T_LONGER = 5.0
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import polynomial
 from pendcore import _core
 from pendcore import events as ev
+from sweeps import random_examples
 
 METHODS = [m["name"] for m in _core.methods() if m["error_order"] and m["kind"] != "pair"]
 """These methods have an interpolant of their own."""
@@ -55,7 +56,7 @@ def crossings(sol, weights, value):
 
 
 @pytest.mark.parametrize("method", METHODS)
-@settings(max_examples=60)
+@settings(max_examples=random_examples(60))
 @given(
     n=st.integers(1, 3), data=st.data(), t_end=st.sampled_from([3.0, -3.0]),
     step=st.sampled_from([None, 0.1, 0.03]), friction=st.booleans(),
@@ -91,7 +92,7 @@ def test_angles_and_rates_are_found_where_a_scan_finds_them(method, n, data, t_e
 
 
 @pytest.mark.parametrize("method", METHODS)
-@settings(max_examples=40)
+@settings(max_examples=random_examples(40))
 @given(
     q0=st.lists(angles, min_size=2, max_size=2), qd0=st.lists(rates, min_size=2, max_size=2),
     point=st.tuples(st.floats(-2, 2), st.floats(-2, 2)), angle=angles,

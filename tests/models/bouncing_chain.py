@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from dense_chain import Array, DenseChain, joints
-from hybrid_chain import extrapolated_step
+from hybrid_chain import extrapolated_step, first_below_zero
 
 SMALLEST = 1e-9  # rad/s
 
@@ -112,13 +112,9 @@ class BouncingChain:
         after = self.step(True, t, y, h)
         if self.pressed(t + h, after) >= 0:
             return t + h, after, True
-        low, high = 0.0, h
-        for _ in range(50):
-            middle = (low + high) / 2
-            pushes = self.pressed(t + middle, self.step(True, t, y, middle)) >= 0
-            low, high = (middle, high) if pushes else (low, middle)
-        self.held_to = float(t + high)
-        return t + high, self.step(True, t, y, high), False
+        end = first_below_zero(lambda s: self.pressed(t + s, self.step(True, t, y, s)), h)
+        self.held_to = float(t + end)
+        return t + end, self.step(True, t, y, end), False
 
     def flown(self, t: float, y: Array, h: float) -> tuple[float, Array, bool]:
         """A step without contact, or the part of it up to an impact, and the impact."""

@@ -3,8 +3,8 @@
 A mode says of each joint whether it is held (0), by friction, a stop or both, or which way it
 turns (1, -1). Within a mode the equations are smooth, and Gragg's method, extrapolated to high
 order, solves them. A mode ends where the rate of a sliding joint reaches zero, the angle of a free
-joint reaches a stop, or the torque that holds a joint reaches the end of its range. Bisection of
-the step finds this time. The next mode is the pattern without contradiction among all patterns
+joint reaches a stop, or the torque that holds a joint reaches the end of its range. Secants within
+the step find this time. The next mode is the pattern without contradiction among all patterns
 (dense_chain.py). Impacts are plastic.
 """
 
@@ -37,6 +37,27 @@ def extrapolated_step(
             row.append(row[j - 1] + (row[j - 1] - table[j - 1]) / (ratio - 1))
         table = row
     return table[-1]
+
+
+def first_below_zero(margin: Callable[[float], float], h: float) -> float:
+    """Return a time up to h by which the margin has become negative, to its last bits.
+
+    This is the Illinois method; no time is tried nearer to a known one than the last bits.
+    """
+    last_bits = h * 2.0**-46
+    low, at_low, high, at_high, before = 0.0, 0.0, h, margin(h), 0
+    while high - low > 2 * last_bits:
+        s = (low + high) / 2
+        if at_low > 0:
+            s = (low * at_high - high * at_low) / (at_high - at_low)
+            s = min(max(s, low + last_bits), high - last_bits)
+        at = margin(s)
+        if at < 0:
+            high, at_high, at_low = s, at, at_low / 2 if before < 0 else at_low
+        else:
+            low, at_low, at_high = s, at, at_high / 2 if before > 0 else at_high
+        before = -1 if at < 0 else 1
+    return high
 
 
 @dataclass(kw_only=True)
@@ -143,17 +164,14 @@ class HybridChain:
         def rates(t: float, y: Array) -> Array:
             return np.append(y[n:], self.solved(mode, t, y)[0])
 
-        def broken(s: float) -> Array:
-            return np.flatnonzero(self.margins(mode, t + s, extrapolated_step(rates, t, y, s)) < 0)
+        def margins(s: float) -> Array:
+            return self.margins(mode, t + s, extrapolated_step(rates, t, y, s))
 
         after = extrapolated_step(rates, t, y, h)
         if (self.margins(mode, t + h, after) >= 0).all():
             return t + h, after, mode
-        low, high = 0.0, h
-        for _ in range(46):
-            middle = (low + high) / 2
-            low, high = (low, middle) if broken(middle).size else (middle, high)
-        which, end = int(broken(high)[0]), t + high
+        high = first_below_zero(lambda s: float(margins(s).min()), h)
+        which, end = int(np.flatnonzero(margins(high) < 0)[0]), t + high
         mode, after = self.next_mode(mode, which, end, extrapolated_step(rates, t, y, high))
         self.switches.append((end, after, tuple(int(sign) for sign in mode)))
         return end, after, mode

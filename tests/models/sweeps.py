@@ -1,7 +1,8 @@
 """The cases of a parametrised test that run: all of them, or few that meet every parameter.
 
 `make test` runs few, so that a newcomer need not wait; `make test-all` runs all. No test function
-is left out: a reduced sweep keeps some values of each parameter, and each of these at least once.
+is left out: a reduced sweep keeps some values of each parameter, and each of these at least once,
+and a third of the random examples.
 """
 
 from __future__ import annotations
@@ -23,6 +24,15 @@ class Case(Protocol):
     def kept_whole(self) -> frozenset[str]:
         """Parameters of which every value is met."""
         ...
+
+
+reduced = True
+"""Whether sweeps are reduced; conftest.py says so before tests are read."""
+
+
+def random_examples(count: int) -> int:
+    """Return how many of so many random examples a test tries: the first ones are plain."""
+    return min(count, max(5, count // 3)) if reduced else count
 
 
 def few(cases: Sequence[Case], values: int) -> list[Case]:

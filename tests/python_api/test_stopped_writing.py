@@ -291,7 +291,7 @@ def test_threads_that_load_at_once_read_whole_files():
     gc.set_threshold(7)
     try:
         with ThreadPoolExecutor(4) as threads:
-            loaded = [*threads.map(load_and_litter, ["a.npz"] * 400)]
+            loaded = [*threads.map(load_and_litter, ["a.npz"] * 200)]
     finally:
         sys.setswitchinterval(before[0])
         gc.set_threshold(*before[1])

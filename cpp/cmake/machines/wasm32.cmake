@@ -2,7 +2,7 @@
 # was compiled. Exceptions are not compiled: a throw ends the program, or calls the host
 # (cpp/wasm/exceptions.cpp).
 #
-#   cmake -B build/elsewhere/wasm32 -DPENDCORE_TESTS=ON
+#   cmake -B build/wasm -DPENDCORE_TESTS=ON
 #         -DCMAKE_TOOLCHAIN_FILE=cpp/cmake/machines/wasm32.cmake
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)

@@ -24,8 +24,6 @@ ROWS = 11
 """The number of times that the table shows."""
 VISIBLE = 1e-9
 """The least time that a run takes if its curves are drawn, as a share of the times themselves."""
-LOSSES = ("viscous", "drag")
-"""The entries of the ledger that smooth effects lose; the others are work done on the chain."""
 MOST_TICKS = 7
 """The largest number of ticks on an axis that is drawn into by hand."""
 OF_LINKS = "The angles of the links over time."
@@ -164,8 +162,8 @@ def energy_check(derivation: Derivation, solution: Solution) -> dict[str, Any]:
     if moves and energy.ledger is not None:
         rows = [("change of $T + V$", f"${number(float(energy.total[-1] - energy.total[0]))}$")]
         for name, entry in energy.ledger.items():
-            kind = f"lost: {name}" if name in LOSSES else f"work done: {name}"
-            words = "left over" if name == "residual" else kind
+            kind = "lost" if name in energy.ledger.losses else "work done"
+            words = "left over" if name == "residual" else f"{kind}: {name}"
             rows.append((words, f"${number(float(entry[-1]))}$"))
     return {
         "exactly": exactly,
