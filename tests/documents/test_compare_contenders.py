@@ -13,7 +13,6 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 
 import contenders
 import stiff
-import sweeps
 from cases import read_case
 from contenders.contender import Unsupported
 from contenders.equations import fill, jacobian, rates
@@ -33,8 +32,6 @@ CASES = {
 }
 # All are right to a thousandth of the length at a middling setting, so all have the same case.
 SETTINGS = {"tolerance": 1e-7, "step": 2e-3}
-COMPILED_SLOWLY = {"cyrk_nbsolve2_rk45"}
-"""Numba takes 10 s for these, so that sweeps which are reduced leave them out."""
 
 
 def dense(case, y):
@@ -100,8 +97,6 @@ def test_every_contender_solves_the_case_that_it_is_given(found, name):
     case = CASES[name]
     n, lengths = case.n, np.array(case.lengths)
     for who in found.values():
-        if sweeps.reduced and who.name in COMPILED_SLOWLY:
-            continue
         states = who.prepare(case, SETTINGS[who.setting]).outcome().states
         assert states.shape == case.reference.shape, who.name
         np.testing.assert_allclose(states[0], case.start, atol=1e-14, err_msg=who.name)

@@ -22,8 +22,8 @@ from typing import Any
 import pytest
 
 OFTEN_IMPORTED = ("matplotlib.pyplot", "mpmath", "numpy", "sympy", "tqdm")
-UNENDING = -99
-"""The exit code of a run that had to be killed."""
+NOT_ENDED = -99
+"""The exit code of a run that was not over in time."""
 UNKNOWN = 0.3
 """How long a test takes of which that is not known, s."""
 
@@ -58,7 +58,7 @@ def base(name: str) -> str:
 
 
 def run_in_a_fork(order: dict[str, Any]) -> int:
-    """Run pytest as ordered; return its exit code, or UNENDING."""
+    """Run pytest as ordered; return its exit code, or NOT_ENDED."""
     child = os.fork()
     if child == 0:
         os.setsid()
@@ -78,11 +78,11 @@ def run_in_a_fork(order: dict[str, Any]) -> int:
         done, status = os.waitpid(child, os.WNOHANG)
         code = os.waitstatus_to_exitcode(status) if done else None
         time.sleep(0.02)
-    with suppress(ProcessLookupError):  # what a test started, or what never ends
+    with suppress(ProcessLookupError):  # what a test started, or a run that is not over
         os.killpg(child, signal.SIGKILL)
     if code is None:
         os.waitpid(child, 0)
-    return UNENDING if code is None else code
+    return NOT_ENDED if code is None else code
 
 
 def read(path: str) -> dict[str, float]:

@@ -19,7 +19,7 @@ import pybind11
 from mutants import coverage_of_tests as coverage
 from mutants.mutation import Mutant
 from mutants.related import related_first
-from mutants.server import UNENDING
+from mutants.server import NOT_ENDED
 
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
@@ -28,8 +28,10 @@ SERVER = Path(__file__).with_name("server.py")
 TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 KINDS = ("not outside_build", "outside_build")
 """The tests that build something outside the project come last."""
-SILENT = 180.0
+SILENT = 90.0
 """A test that takes so long has lost its way, s."""
+NOTICED_IN = 240.0
+"""A mutant of the package that its tests have not noticed by then counts as alive, s."""
 PATIENCE = 1800.0
 """No build and no run of all tests takes so long, s."""
 
@@ -207,18 +209,18 @@ class Place:
             code, said = self.run(self.workshop.those_that_run(mutant))
         finally:
             file.write_bytes(right)
-        if code in (0, 5):  # 5: no test is chosen
+        if code in (0, 5, NOT_ENDED):  # 5: no test is chosen
             return Outcome("alive")
         by = first(r"^(?:FAILED|ERROR) (\S+)", said) or first(r"^(Timeout .*)", said)
-        if not by and code != UNENDING:
+        if not by:
             raise RuntimeError(f"pytest did not run: {said[-1000:]}")
-        return Outcome("killed", by or "a run without end")
+        return Outcome("killed", by)
 
     def run(self, tests: list[str]) -> tuple[int, str]:
         """Return how pytest ended with these tests, and what it said."""
         output = self.folder / "output.txt"
         order = {
-            "site": str(self.site), "tests": tests, "output": str(output), "patience": PATIENCE,
+            "site": str(self.site), "tests": tests, "output": str(output), "patience": NOTICED_IN,
             "seconds": str(self.folder / "seconds.json"),
             "arguments": [*PYTEST, "-m", KINDS[0], *sorted({t.partition("::")[0] for t in tests})],
         }  # fmt: skip
