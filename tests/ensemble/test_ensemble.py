@@ -141,6 +141,7 @@ REFUSED = [
     ({"vary": {"gravty": 1.0}}, 'did you mean "gravity"'),
     ({"keep": "all"}, 'keep = \'all\': must be "end", "times"'),
     ({"keep": "ends"}, 'keep = \'ends\': must be "end", "times"'),
+    ({"store": "dense"}, "store = 'dense': is a folder for the results here"),
     ({"keep": "times"}, "t_eval is missing"),
     ({"t_eval": [0.5]}, "is kept only with"),
     ({"workers": 0}, "workers = 0: must be 1 or more"),

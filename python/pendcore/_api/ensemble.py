@@ -20,7 +20,7 @@ from pendcore._messages.progress import Progress
 from pendcore._messages.warning import warn
 from pendcore._scene.scene import Scene, require_scene
 from pendcore.events import Event, events_asked_for
-from pendcore.options import RUN_DEFAULTS, OnFailure
+from pendcore.options import OPTIONS, RUN_DEFAULTS, OnFailure
 from pendcore.reducers import REDUCERS, Reducer
 
 Keep = str | Reducer | Mapping[str, Reducer]
@@ -131,6 +131,11 @@ def ensemble(
     ((100, 2), {'finished': 100})
     """
     require_scene(scene)
+    if isinstance(store, str) and f'"{store}"' in OPTIONS["store"].type:
+        raise ValueError(
+            f"store = {store!r}: is a folder for the results here: name one, {store + '.zarr'!r}; "
+            "what is kept of each member is for keep"
+        )
     members = members_of(scene, q0, qd0, vary)
     _warn_of_degrees(np.asarray(q0, dtype=np.float64))
     options = {
