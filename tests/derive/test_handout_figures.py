@@ -106,6 +106,20 @@ def test_names_in_figures_lie_on_nothing(seed: int) -> None:
                     assert not rod.intersects_bbox(box, filled=False), text
 
 
+@pytest.mark.parametrize("name", CASES)
+def test_names_of_mass_centres_lie_beside_them(name: str) -> None:
+    case = CASES[name]
+    figure = drawn("mechanism", case.scene, case.q0)
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    names = {text.get_text(): text.get_window_extent() for text in axes.texts}
+    for i, center in enumerate(case.scene.mass_centers(0.0, case.q0), start=1):
+        (left, low), (right, high) = names[f"$C_{{{i}}}$"].get_points()
+        x, y = axes.transData.transform(center)
+        gap = np.hypot(max(left - x, x - right, 0.0), max(low - y, y - high, 0.0))
+        assert gap * 72 / figure.dpi < 20  # points
+
+
 def test_empty_axes_name_each_angle_and_span_the_run() -> None:
     figure = empty_axes(pc.simulate(pc.Scene.textbook(), (0.5, 2.0), [0.1, 0.2])).figure
     assert [axes.get_ylabel() for axes in figure.axes] == ["q1 (deg)", "q2 (deg)"]

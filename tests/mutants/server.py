@@ -29,7 +29,7 @@ UNKNOWN = 0.3
 
 
 class Chosen:
-    """Of the files that are collected, run the chosen tests, the quickest first.
+    """Of the files that are collected, run the chosen tests, the quickest first, whole files last.
 
     They are not named to pytest: it would run each with all its parameters, not with the few of
     `make test`.
@@ -42,7 +42,11 @@ class Chosen:
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         items[:] = [item for item in items if self.wants(item.nodeid)]
-        items.sort(key=lambda item: self.seconds.get(base(item.nodeid), UNKNOWN))
+        items.sort(key=self.rank)
+
+    def rank(self, item: pytest.Item) -> tuple[bool, float]:
+        name = base(item.nodeid)
+        return name not in self.tests, self.seconds.get(name, UNKNOWN)
 
     def wants(self, name: str) -> bool:
         return not self.tests.isdisjoint((base(name), name.partition("::")[0]))

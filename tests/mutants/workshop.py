@@ -36,6 +36,8 @@ SERVER = Path(__file__).with_name("server.py")
 TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 KINDS = ("not outside_build", "outside_build")
 """The tests that build something outside the project come last."""
+SPEAK_OF_IT = 10
+"""So many files of tests are asked of each mutant of the package, whatever lines they run."""
 SILENT = 90.0
 """A test that takes so long has lost its way, s."""
 NOTICED_IN = 240.0
@@ -121,15 +123,18 @@ class Workshop:
             file.write_bytes(right)
 
     def those_that_run(self, mutant: Mutant) -> list[str]:
-        """Return the tests that run the line of a mutant of the package.
+        """Return the tests that run the line of a mutant of the package, and files to run whole.
 
-        A line that runs in a process of its own may be run by any test that starts one.
+        A line that runs in a process of its own may be run by any test that starts one. What a line
+        returned may be kept, and be used by tests that do not run it: the files that speak most of
+        it are asked, too.
         """
         source = (SOURCE / mutant.path).read_text()
         path = mutant.path.removeprefix("python/")
         tests = coverage.tests_that_run(self.tests_of_lines, path, source, mutant.line)
-        if not tests or coverage.OUTSIDE in tests:
-            files = related_first(SOURCE, mutant.path)
+        files = related_first(SOURCE, mutant.path)
+        tests += files[:SPEAK_OF_IT]
+        if coverage.OUTSIDE in tests:
             tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
         return [test for test in tests if test != coverage.OUTSIDE]
 
@@ -229,7 +234,7 @@ class Place:
         output = self.folder / "output.txt"
         order = {
             "site": str(self.site), "tests": tests, "output": str(output), "patience": NOTICED_IN,
-            "seconds": str(self.folder / "seconds.json"),
+            "seconds": str(self.folder.with_suffix(".json")),
             "arguments": [*PYTEST, "-m", KINDS[0], *sorted({t.partition("::")[0] for t in tests})],
         }  # fmt: skip
         if not tests:

@@ -64,7 +64,7 @@ def widget_of(text: str, height: int) -> Any:
 
         _esm = _WIDGET
         page = traitlets.Unicode("").tag(sync=True)
-        height = traitlets.Int(900).tag(sync=True)
+        height = traitlets.Int().tag(sync=True)
         text = traitlets.Unicode("").tag(sync=True)
 
         @property
