@@ -9,6 +9,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from handed_out_cases import CASES, drawn
+from matplotlib.figure import Figure
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
 from pendcore.derive.report import drawing
@@ -59,6 +60,14 @@ def test_free_bodies_have_names_and_the_couple_that_turns_a_payload() -> None:
     assert couple not in names[0]
     assert names[1] >= {"link 2", "$C_{2}$", "$B$", "$D$", "$F_{p2x}$", "$F_{p2y}$", couple}
     assert names[2] >= {"payload", "$D$", "$m_{p} g$", "$F_{p2x}$", "$F_{p2y}$", couple}
+
+
+@pytest.mark.parametrize("angle", [0.3, 2.0, -1.2, -2.9])
+def test_a_couple_is_drawn_on_the_side_that_is_asked_for(angle: float) -> None:
+    on = drawing.Sketch(Figure().subplots(), 1.0)
+    drawing.couple(on, np.zeros(2), drawing.direction(angle), "$M$")
+    ((points, _),) = on.drawn
+    assert np.arctan2(*points.mean(axis=0)[::-1]) == pytest.approx(angle, abs=0.1)
 
 
 @pytest.mark.parametrize("name", CASES)

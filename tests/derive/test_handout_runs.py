@@ -11,6 +11,7 @@ import pendcore as pc
 import pytest
 from handed_out_cases import reported, solved
 from pendcore.derive.report import motion
+from pendcore.derive.report.quantities import Scales
 from symbolic_scenes import derivation
 
 pytestmark = pytest.mark.unsanitized
@@ -126,6 +127,15 @@ def test_the_largest_reactions_are_those_of_the_curve_to_four_digits(of: pc.Case
         assert peak.force == pytest.approx(sizes(of, near)[:, i].max(), rel=1e-9)
         assert peak.force == pytest.approx(sizes(of, [peak.t])[0, i], rel=1e-13)
         assert rf"= {peak.force:.4g}\;\text{{N}}$ at $t = {peak.t:.4g}\;" in text
+
+
+def test_what_is_rounding_depends_on_the_size_of_the_mechanism() -> None:
+    for size in (1.0, 1e-3):
+        rod = pc.Link(mass=size**3, length=size)
+        scales = Scales(derivation(pc.Scene(links=[rod], gravity=9.807)))
+        moment = 9.807 * size**4
+        assert scales.shown(1e-9 * moment, "N m") == 1e-9 * moment
+        assert scales.shown(1e-14 * moment, "N m") == 0.0
 
 
 def test_small_numbers_are_printed_and_rounding_of_0_is_not() -> None:
