@@ -13,7 +13,7 @@ import pendcore as pc
 import pytest
 from pendcore._accuracy.position_error import time_grid
 from pendcore.cli import main
-from pendcore.cost.point import Point, front, seconds_at
+from pendcore.cost.point import Point, duration, front, seconds_at
 from pendcore.cost.reference import reference
 from pendcore.cost.runs import Start
 
@@ -130,6 +130,12 @@ def test_between_the_points_log_time_is_linear_in_log_error():
     assert seconds_at(1e-3, curve, 0.0) == pytest.approx(10.0)
     assert seconds_at(1e-1, curve, 0.0) == 1.0
     assert seconds_at(1e-5, curve, 0.0) is None
+
+
+def test_times_are_told_in_three_digits_and_the_unit_that_suits_them():
+    told = {2.5e-6: "2.5 us", 9.994e-4: "999 us", 1e-3: "1 ms", 0.25: "250 ms", 12.34: "12.3 s"}
+    assert {seconds: duration(seconds) for seconds in told} == told
+    assert duration(np.nan) == "-"
 
 
 def test_the_best_is_the_cheapest_that_keeps_the_error(book):

@@ -13,7 +13,16 @@ import pendcore as pc
 import pytest
 from handed_out_cases import AIRY, BUSY, CASES, LEVEL, SHAKEN
 from pendcore.derive import Derivation, line_breaks
-from pendcore.derive.document import Blank, Displayed, Document, Reader, Table
+from pendcore.derive.document import (
+    Blank,
+    Displayed,
+    Document,
+    Heading,
+    Paragraph,
+    Reader,
+    Table,
+    written,
+)
 from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.quantities import number
 from symbolic_scenes import derivation
@@ -276,3 +285,4 @@ def test_every_reader_has_the_figures_and_no_table_is_parted_by_the_end_of_a_pag
         room = re.search(r"needroom\{(\d+)", "".join(paragraphs[i - 2 : i]))
         assert room, paragraphs[i]
         assert int(room[1]) > paragraphs[i].count("\n") + 1
+    assert "needroom" not in written([Heading(2, "A"), Paragraph("b")], Reader.PDF)

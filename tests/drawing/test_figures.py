@@ -138,6 +138,7 @@ def test_free_bodies_show_each_force_by_its_size(sol):
     axis = artists[0].axes
     sizes = [text.get_text() for text in axis.texts if text.get_text().endswith("N")]
     assert sizes.count(sizes[1]) == 2  # action and reaction
+    assert {text.get_text().strip() for text in axis.texts} >= {"link 1", "link 2"}
     assert axis.get_title() == "t = 1 s"
 
 

@@ -184,6 +184,7 @@ def archived(tmp_path_factory, plain):
         return dict(entries)
 
 
+@pytest.mark.every_value("key")
 @pytest.mark.parametrize("key", ARCHIVED)
 def test_every_wrong_kind_of_what_an_archive_tells_is_refused_in_one_sentence(
     tmp_path, archived, key

@@ -76,6 +76,14 @@ def test_the_largest_exponent_is_that_of_lyapunov(name):
         assert found["largest_exponent"][i] == alone.largest
 
 
+def test_equal_reducers_are_one_in_a_set():
+    event = pc.events.RateZero(link=1)
+    of_each_kind = R.FirstEvent, R.Extremes, R.EnergyDrift, R.LargestExponent
+    for kind in of_each_kind:
+        given = [event] if kind is R.FirstEvent else []
+        assert len({kind(*given), kind(*given)}) == 1
+
+
 def test_a_scene_without_exponents_is_refused():
     how = {"q0": [0.1, 0.1], "t_span": (0, 1), "keep": R.LargestExponent()}
     with pytest.raises(ValueError, match="remove dry friction and stops"):
