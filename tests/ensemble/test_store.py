@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -261,6 +262,19 @@ except OSError as error:
     q0 = pc.sampling.uniform(-2, 2, (64, 2), seed=1)
     found = pc.ensemble(BOOK, q0=q0, t_span=(0, 1000), store=path)
     assert found.counts() == {"finished": 64}
+
+
+def test_members_that_run_four_times_as_long_go_in_chunks_of_a_quarter(tmp_path):
+    starts = np.linspace(0.1, 0.2, 600)[:, np.newaxis] * [1, 1]
+    found = {}
+    for t_end in (0.0, 250.0, 1000.0):
+        path = tmp_path / f"{t_end}.zarr"
+        with suppress(KeyboardInterrupt):
+            pc.ensemble(BOOK, (0, t_end), starts, store=path, progress=stop_early)
+        told = json.loads((path / "zarr.json").read_text())
+        (found[t_end],) = told["attributes"]["block_shape"]
+    assert found[0.0] == 600
+    assert found[250.0] == 4 * found[1000.0]
 
 
 def test_progress_rises_to_1_within_blocks_and_from_one_to_the_next(tmp_path):

@@ -101,7 +101,6 @@ def finish(on: Sketch, *, above: float = 0.0, shrink: bool = False) -> None:
     top = above / scale / 2
     on.axes.set_xlim(middle[0] - x, middle[0] + x)
     on.axes.set_ylim(middle[1] + y - top, middle[1] - y - top)
-    on.axes.apply_aspect()
     place(on.axes, on.labels, on.drawn)
 
 
