@@ -55,7 +55,7 @@ def main(arguments: list[str] | None = None) -> int:
     source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
     if any(source.items() - one.items() for one in told):
         parser.error(f"{record} is of another commit or seed: give another --record")
-    workshop = Workshop(source["commit"], asked.part)
+    workshop = Workshop(source["commit"])
     if asked.part == "package" and (plain := workshop.measured()).what != "alive":
         print(f"the tests fail without a mistake: {plain.by}")
         return 1

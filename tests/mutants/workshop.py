@@ -23,15 +23,7 @@ from mutants.server import NOT_ENDED
 
 ROOT = Path(__file__).parents[2]
 PLACE = ROOT / "build/mutants"
-SOURCE, SITE = PLACE / "source", PLACE / "site"
-BUILDS = {
-    "package": ["-DCMAKE_BUILD_TYPE=Release"],
-    "core": [
-        "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-Og -DNDEBUG",
-        "-DPENDCORE_BASELINE_ONLY=ON",
-    ],
-}  # fmt: skip
-"""How the core is built: that of a mutant of its own in a third of the time."""
+SOURCE, BUILD, SITE = PLACE / "source", PLACE / "core", PLACE / "site"
 SERVER = Path(__file__).with_name("server.py")
 TESTS_OF_LINES = PLACE / "tests_of_lines.json"
 KINDS = ("not outside_build", "outside_build")
@@ -62,8 +54,8 @@ class Outcome:
 class Workshop:
     """A clone of a commit, its core built, its package without a mistake."""
 
-    def __init__(self, commit: str, part: str) -> None:
-        self.commit, self.build = commit, PLACE / f"build-{part}"
+    def __init__(self, commit: str) -> None:
+        self.commit = commit
         self.environment = os.environ | {
             "PYTHONPATH": str(SITE), "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1",
         }  # fmt: skip
@@ -73,12 +65,12 @@ class Workshop:
         run(["git", "-C", SOURCE, "fetch", "--quiet"])
         run(["git", "-C", SOURCE, "checkout", "--quiet", "--force", commit])
         run([
-            "cmake", "-G", "Ninja", "-S", SOURCE, "-B", self.build, *BUILDS[part],
+            "cmake", "-G", "Ninja", "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release",
             "-DPENDCORE_PYTHON=ON", "-DPENDCORE_TESTS=ON", f"-DPython_EXECUTABLE={sys.executable}",
             f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
         ])  # fmt: skip
-        if not self.built():
-            raise SystemExit(f"{commit} does not build: cmake --build {self.build} says why")
+        if not self.built("all", "tests/cpp/all"):
+            raise SystemExit(f"{commit} does not build: cmake --build {BUILD} says why")
         shutil.rmtree(SITE, ignore_errors=True)
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
         self.installed()
@@ -110,15 +102,17 @@ class Workshop:
         right = file.read_bytes()
         file.write_bytes(mutant.applied(right))
         try:
-            if not self.built():
+            if not self.built("tests/cpp/all"):
+                return Outcome("no program")
+            if (outcome := self.asked_of_ctest()).what == "killed":
+                return outcome
+            if not self.built("all"):
                 return Outcome("no program")
             file.write_bytes(right)  # tests that build anew build what is right
             self.installed()
             if self.bytes_of_core() == self.core:
                 return Outcome("same program")
-            outcome = self.asked_of_ctest()
-            tests = related_first(SOURCE, mutant.path)
-            return outcome if outcome.what == "killed" else self.asked_of_tests(tests)
+            return self.asked_of_tests(related_first(SOURCE, mutant.path))
         finally:
             file.write_bytes(right)
 
@@ -138,12 +132,11 @@ class Workshop:
             tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
         return [test for test in tests if test != coverage.OUTSIDE]
 
-    def built(self) -> bool:
-        targets = ["all", "tests/cpp/all"]
-        return self.call(["cmake", "--build", self.build, "--target", *targets])[0] == 0
+    def built(self, *targets: str) -> bool:
+        return self.call(["cmake", "--build", BUILD, "--target", *targets])[0] == 0
 
     def installed(self) -> None:
-        run(["cmake", "--install", self.build, "--prefix", SITE / "pendcore"])
+        run(["cmake", "--install", BUILD, "--prefix", SITE / "pendcore"])
 
     def bytes_of_core(self) -> str:
         (core,) = (SITE / "pendcore").glob("_core*.so")
@@ -151,7 +144,7 @@ class Workshop:
 
     def asked_of_ctest(self) -> Outcome:
         code, said = self.call(
-            ["ctest", "--test-dir", self.build, "--stop-on-failure", "--timeout", "300"]
+            ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
         )
         if code:
             return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
