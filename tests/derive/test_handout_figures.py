@@ -77,6 +77,7 @@ def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
     assert axes.yaxis_inverted()
     names = {text.get_text() for text in axes.texts}
     assert {"$A$", "$x$", "$y$", "$0$"} <= names
+    assert ("$m_p$" in names) == any(one.kind == "payload" for one in case.scene.effects)
     assert {f"$q_{{{i}}}$" for i in range(1, len(case.q0) + 1)} <= names
     pins = [p.center for p in axes.patches if getattr(p, "radius", 0) and p.get_zorder() == 6]
     expected = case.simulate().positions()[0]
