@@ -118,12 +118,21 @@ def test_an_earlier_file_stays_whole_and_is_said_to_be_there(monkeypatch, pendco
     assert Path("o/solution.npz").read_bytes() == earlier
 
 
-def test_where_nothing_can_be_written_no_folder_is_left(monkeypatch, pendcore):
+NOTHING_WRITTEN = {  # what is told all the same
+    "run -o o": "largest reaction",
+    "cost --methods dopri5 --repeats 1 --time-limit 2 -o o": "dopri5",
+    "map case.toml --no-trust -o o": "q[1]",
+}
+
+
+@pytest.mark.parametrize("line", NOTHING_WRITTEN)
+def test_where_nothing_can_be_written_no_folder_is_left(line, monkeypatch, pendcore):
+    Path("case.toml").write_text(BOOK.to_toml() + MAP)
     for place in ARRAYS, (Path, "write_text"), FIGURES:
         stop_at(monkeypatch, place, FULL)
-    status, out, err = pendcore("run -o o")
-    assert (status, listed()) == (1, [])
-    assert "largest reaction" in out  # the facts are told where they can be
+    status, out, err = pendcore(line)
+    assert (status, listed()) == (1, ["case.toml"])
+    assert NOTHING_WRITTEN[line] in out
     assert "written to o: nothing\n" in err
 
 
