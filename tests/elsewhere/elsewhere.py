@@ -125,11 +125,10 @@ def hashes_in(text: str) -> dict[str, str]:
 def built(build: str, *, contracted: bool) -> Path:
     """Build what runs there, and return the folder; with contraction, the hashes alone.
 
-    The core in WebAssembly is that of `make page`, which is compiled once.
+    The core in WebAssembly is the one that `make page` compiles.
     """
-    folder = ROOT / "build/elsewhere" / (f"{build}-contracted" if contracted else build)
-    if build == WEBASSEMBLY:
-        folder = ROOT / "build/wasm"
+    own = f"elsewhere/{build}-contracted" if contracted else f"elsewhere/{build}"
+    folder = ROOT / "build" / ("wasm" if build == WEBASSEMBLY else own)
     targets = ["trajectory_hash"]
     if not contracted:
         targets += ["check_fma", "pendcore_tests"]

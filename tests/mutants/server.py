@@ -29,7 +29,7 @@ UNKNOWN = 0.3
 
 
 class Chosen:
-    """Of the files that are collected, run the chosen tests, the quickest first, whole files last.
+    """Lets the chosen tests of a run begin with the quickest, and files that run whole come last.
 
     They are not named to pytest: it would run each with all its parameters, not with the few of
     `make test`.

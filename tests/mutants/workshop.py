@@ -217,8 +217,8 @@ class Place:
             file.write_bytes(right)
         if code in (0, 5, NOT_ENDED):  # 5: no test is chosen
             return Outcome("alive")
-        by = first(r"^(?:FAILED|ERROR) (\S+)", said) or first(r"^(Timeout .*)", said)
-        by = by or first(r"^ImportError while loading (conftest) ", said)
+        failed = r"^(?:FAILED|ERROR|ImportError while loading) (\S+)"
+        by = first(failed, said) or first(r"^(Timeout .*)", said)
         if not by:
             raise RuntimeError(f"pytest did not run: {said[-1000:]}")
         return Outcome("killed", by)

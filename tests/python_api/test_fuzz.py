@@ -14,8 +14,9 @@ from fuzz.choices import FromSeed
 from fuzz.drawn_run import TIME_LIMIT, Drawn
 from fuzz.readers import READERS, finding, read_archive, read_case, whole_archives, whole_cases
 from fuzz.verdict import Verdict
+from sweeps import random_examples
 
-CASES = 200
+CASES = random_examples(400)
 SEED = "ci"
 
 
@@ -61,7 +62,7 @@ def test_what_is_whole_is_read_and_used():
         read_case(text)
 
 
-TIMES = {"case": 100, "archive": 50, "state": 200, "scene": 100, "store": 20}
+TIMES = {"case": 200, "archive": 100, "state": 400, "scene": 200, "store": 40}
 
 
 @pytest.mark.parametrize("reader", READERS)
@@ -69,6 +70,6 @@ def test_what_is_damaged_is_refused_in_words_or_used(reader):
     """And in time: an input that takes more processor time than `MOST_SECONDS` is a finding."""
     if reader == "store":
         pytest.importorskip("zarr", exc_type=ImportError)
-    for i in range(TIMES[reader]):
+    for i in range(random_examples(TIMES[reader])):
         found = finding(lambda: READERS[reader](FromSeed(f"{reader}/{i}")))  # noqa: B023
         assert found is None, f"{reader}/{i}: {found}"

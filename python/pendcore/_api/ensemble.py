@@ -131,7 +131,7 @@ def ensemble(
     ((100, 2), {'finished': 100})
     """
     require_scene(scene)
-    if isinstance(store, str) and f'"{store}"' in OPTIONS["store"].type:
+    if isinstance(store, str) and f'"{store}"' in OPTIONS["store"].type:  # as in simulate
         raise ValueError(
             f"store = {store!r}: is a folder for the results here: name one, {store + '.zarr'!r}; "
             "what is kept of each member is for keep"

@@ -162,7 +162,7 @@ def _take_back(place: Path, files: list[str]) -> None:
         with suppress(OSError):
             for folder in Path(name).parents:
                 (place / folder).rmdir()
-    with suppress(OSError):  # made anew when Zarr opened it, before any file
+    with suppress(OSError):  # Zarr makes it anew when it opens it, before any file
         place.rmdir()
 
 
