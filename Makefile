@@ -44,7 +44,8 @@ test-all: lint tidy build-bench page $(DONE)/test-requirements $(DONE)/fuzz-requ
 	@sh setup/debian_packages.sh octave pandoc ffmpeg chromium
 	$(CPP_TESTS)
 	$(PYTEST) --full
-	$(MAKE) sanitize elsewhere wheel site CONTRACTED=--contracted
+	$(MAKE) sanitize SHARE=3
+	$(MAKE) elsewhere wheel site CONTRACTED=--contracted
 	$(MAKE) campaign OF=readers
 	$(MAKE) campaign OF=fuzz CASES=20000
 

@@ -5,8 +5,10 @@
     PYTHONPATH=tests python -m mutants.campaign package --only 17      # that one again
 
 A line is drawn of all lines in which a mistake can be made, and a mistake on it. A mistake that
-makes no program, or the same one, does not count. Each outcome is written down at once; the same
-command goes on where it was broken off, and then shows what is alive.
+makes no program, or the same one, does not count. All mistakes in the core are in one build, and
+are switched on one by one; what cannot be switched does not count, and is tried with --only. Each
+outcome is written down at once; the same command goes on where it was broken off, and then shows
+what is alive.
 """
 
 from __future__ import annotations
@@ -29,13 +31,16 @@ from typing import Any
 
 from tqdm import tqdm
 
-from mutants.mutation import PARSERS, Mutant, mutants
-from mutants.workshop import ROOT, SOURCE, Outcome, Place, Workshop
+from mutants.mutation import PARSERS, Mutant
+from mutants.mutation import mutants as mutants_of
+from mutants.workshop import ROOT, Outcome, Place, Workshop
 
 PARTS = {"core": ["cpp/src", "cpp/include", "cpp/bindings"], "package": ["python/pendcore"]}
 COUNTED = ("killed", "alive")
 AT_ONCE = cpu_count() or 1
-"""So many mutants of the package are tested at once; the core is built for one at a time."""
+"""So many mutants are tested at once."""
+SPARE = 1.3
+"""So many times the mutants asked for are built into a core: some do not count."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -55,43 +60,46 @@ def main(arguments: list[str] | None = None) -> int:
     source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
     if any(source.items() - one.items() for one in told):
         parser.error(f"{record} is of another commit or seed: give another --record")
-    workshop = Workshop(source["commit"])
-    if asked.part == "package" and (plain := workshop.measured()).what != "alive":
+    wide = int(SPARE * asked.count)
+    mutants = list(islice(drawn(asked.part, asked.seed, source["commit"]), wide))
+    alone = asked.part == "core" and asked.only is not None
+    switches = asked.part == "core" and not alone
+    workshop = Workshop(source["commit"], dict(enumerate(mutants, 1)) if switches else {})
+    if not alone and (plain := workshop.measured(asked.part == "package")).what != "alive":
         print(f"the tests fail without a mistake: {plain.by}")
         return 1
-    tested: Callable[[Mutant], Outcome] = workshop.tested
-    if asked.part == "package":
-        places: SimpleQueue[Place] = SimpleQueue()
-        for number in range(AT_ONCE):
-            places.put(Place(workshop, number))
+    places: SimpleQueue[Place] = SimpleQueue()
+    for number in range(0 if alone else AT_ONCE):
+        places.put(Place(workshop, number))
 
-        def tested(mutant: Mutant) -> Outcome:
-            place = places.get()
-            try:
-                return place.tested(mutant)
-            finally:
-                places.put(place)
+    def tested(number: int, mutant: Mutant) -> Outcome:
+        if alone:
+            return workshop.tested(mutant)
+        place = places.get()
+        try:
+            return place.switched(number, mutant) if switches else place.tested(mutant)
+        finally:
+            places.put(place)
 
     def tried(number: int, mutant: Mutant) -> dict[str, Any]:
         start = time.monotonic()
-        outcome = tested(mutant)
+        outcome = tested(number + 1, mutant)
         seconds = round(time.monotonic() - start, 1)
         found = {"outcome": outcome.what, "by": outcome.by, "seconds": seconds}
         return {"number": number, **source, **asdict(mutant), **found}
 
-    mutants_drawn = enumerate(drawn(asked.part, asked.seed))
     if asked.only is not None:
-        print(json.dumps(tried(*next(islice(mutants_drawn, asked.only, None))), indent=1))
+        print(json.dumps(tried(asked.only, mutants[asked.only]), indent=1))
         return 0
     until = time.monotonic() + asked.seconds
     counted = sum(one["outcome"] in COUNTED for one in told)
     left = takewhile(
         lambda _: counted < asked.count and time.monotonic() < until,
-        islice(mutants_drawn, len(told), None),
+        islice(enumerate(mutants), len(told), None),
     )
     record.parent.mkdir(parents=True, exist_ok=True)
     with tqdm(total=asked.count, initial=counted, unit="mutant", disable=None) as bar:
-        for one in in_order(tried, left, AT_ONCE if asked.part == "package" else 1):
+        for one in in_order(tried, left, AT_ONCE):
             told.append(one)
             with record.open("a") as lines:
                 print(json.dumps(one), file=lines)
@@ -116,13 +124,14 @@ def in_order(
             yield waiting.popleft().result()
 
 
-def drawn(part: str, seed: int) -> Iterator[Mutant]:
+def drawn(part: str, seed: int, commit: str) -> Iterator[Mutant]:
     """Return the mutants of a part of the program, each line once, in an order drawn by a seed."""
     dice = Random(f"{seed} {part}")
     by_line: dict[tuple[str, int], list[Mutant]] = {}
-    for path in git(SOURCE, "ls-files", *PARTS[part]).splitlines():
+    for path in git(ROOT, "ls-tree", "-r", "--name-only", commit, *PARTS[part]).splitlines():
         if Path(path).suffix in PARSERS:
-            for mutant in mutants(path, (SOURCE / path).read_bytes()):
+            source = subprocess.check_output(["git", "show", f"{commit}:{path}"], cwd=ROOT)
+            for mutant in mutants_of(path, source):
                 by_line.setdefault((mutant.path, mutant.line), []).append(mutant)
     lines = sorted(by_line)
     dice.shuffle(lines)

@@ -36,9 +36,12 @@ STATEMENTS = {
     "expression_statement", "raise_statement", "throw_statement", "break_statement",
     "continue_statement", "delete_statement",
 }  # fmt: skip
+NOT_ASKED = {"switch_statement", "preproc_if", "preproc_elif"}
+"""Their conditions are no question to a run."""
 LEFT_ALONE = {
     "type", "comment", "import_statement", "import_from_statement", "future_import_statement",
-    "static_assert_declaration", "attribute_declaration", "preproc_include", "preproc_call",
+    "static_assert_declaration", "attribute_declaration", "attribute_specifier",
+    "pure_virtual_clause", "preproc_include", "preproc_call",
 }  # fmt: skip
 
 
@@ -96,7 +99,8 @@ def mutate(node: Node, is_python: bool, add: Add) -> None:
         add("constant", node, OTHER_OPERATOR[text(node)])
     elif node.type in STATEMENTS and not only_names_something(node):
         add("left out", node, "pass" if is_python else ";")
-    if (condition := node.child_by_field_name("condition")) is not None:
+    condition = node.child_by_field_name("condition")
+    if condition is not None and node.type not in NOT_ASKED:
         asked = text(condition)
         if "=" not in asked.replace("==", "").replace("<=", "").replace(">=", "").replace("!=", ""):
             add("condition", condition, f"not ({asked})" if is_python else negated(asked))

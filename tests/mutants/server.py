@@ -70,7 +70,7 @@ def run_in_a_fork(order: dict[str, Any]) -> int:
         os.dup2(output, 1)
         os.dup2(output, 2)
         sys.path.insert(0, order["site"])
-        os.environ["PYTHONPATH"] = order["site"]
+        os.environ.update(order["environment"], PYTHONPATH=order["site"])
         seconds = read(order["seconds"])
         code = int(pytest.main(order["arguments"], [Chosen(order["tests"], seconds)]))
         Path(order["seconds"]).write_text(json.dumps(seconds))

@@ -9,14 +9,16 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
+from types import MappingProxyType
 
 import pybind11
 
 from mutants import coverage_of_tests as coverage
+from mutants import switched as switches
 from mutants.mutation import Mutant
 from mutants.related import related_first
 from mutants.server import NOT_ENDED
@@ -52,10 +54,14 @@ class Outcome:
 
 
 class Workshop:
-    """A clone of a commit, its core built, its package without a mistake."""
+    """A clone of a commit, its core built, its package without a mistake.
 
-    def __init__(self, commit: str) -> None:
+    Of the mutants of the core that are given, by number, `switched` are in the build.
+    """
+
+    def __init__(self, commit: str, mutants: Mapping[int, Mutant] = MappingProxyType({})) -> None:
         self.commit = commit
+        self.switched = dict(mutants)
         self.environment = os.environ | {
             "PYTHONPATH": str(SITE), "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1",
         }  # fmt: skip
@@ -67,9 +73,9 @@ class Workshop:
         run([
             "cmake", "-G", "Ninja", "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release",
             "-DPENDCORE_PYTHON=ON", "-DPENDCORE_TESTS=ON", f"-DPython_EXECUTABLE={sys.executable}",
-            f"-Dpybind11_DIR={pybind11.get_cmake_dir()}",
+            f"-Dpybind11_DIR={pybind11.get_cmake_dir()}", *self.options(),
         ])  # fmt: skip
-        if not self.built("all", "tests/cpp/all"):
+        if not (self.built_with_switches() if mutants else self.built("all", "tests/cpp/all")):
             raise SystemExit(f"{commit} does not build: cmake --build {BUILD} says why")
         shutil.rmtree(SITE, ignore_errors=True)
         shutil.copytree(SOURCE / "python/pendcore", SITE / "pendcore")
@@ -77,8 +83,43 @@ class Workshop:
         self.core = self.bytes_of_core()
         self.tests_of_lines: coverage.TestsOfLines = {}
 
-    def measured(self) -> Outcome:
-        """Run all tests without a mistake, and learn which of them run a line of the package."""
+    def options(self) -> list[str]:
+        """Return how CMake builds the core with switches: one clone has all mutants."""
+        if not self.switched:
+            return ["-DPENDCORE_BASELINE_ONLY=OFF", "-DCMAKE_CXX_FLAGS="]
+        header = PLACE / "switches.hpp"
+        header.write_text(switches.HEADER)
+        return ["-DPENDCORE_BASELINE_ONLY=ON", f"-DCMAKE_CXX_FLAGS=-include {header} -w"]
+
+    def built_with_switches(self) -> bool:
+        """Build all mutants at once; those go that do not compile so."""
+        right = {m.path: (SOURCE / m.path).read_bytes() for m in self.switched.values()}
+        try:
+            while True:
+                for path, source in right.items():
+                    there = {n: m for n, m in self.switched.items() if m.path == path}
+                    wrong = switches.switched(path, source, there)
+                    if (SOURCE / path).read_bytes() != wrong:
+                        (SOURCE / path).write_bytes(wrong)
+                command = ["cmake", "--build", BUILD, "--target", "all", "tests/cpp/all"]
+                code, said = self.call([*command, "--", "-k", "0"])
+                if not code:
+                    return True
+                out = switches.not_compiled(said, SOURCE, self.switched)
+                if not out:
+                    return False
+                for number in out:
+                    del self.switched[number]
+        finally:
+            for path, source in right.items():
+                (SOURCE / path).write_bytes(source)
+
+    def measured(self, package: bool) -> Outcome:
+        """Run all tests without a mistake; learn which of them run a line of the package."""
+        if not package:
+            outcome = self.asked_of_ctest()
+            tests = related_first(SOURCE, "")
+            return outcome if outcome.by else self.asked_of_tests(tests, KINDS[:1])
         known = TESTS_OF_LINES.with_suffix(f".{self.commit}.json")
         if not known.exists():
             data = PLACE / "coverage/data"
@@ -142,9 +183,9 @@ class Workshop:
         (core,) = (SITE / "pendcore").glob("_core*.so")
         return sha256(core.read_bytes()).hexdigest()
 
-    def asked_of_ctest(self) -> Outcome:
+    def asked_of_ctest(self, number: int = 0) -> Outcome:
         code, said = self.call(
-            ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
+            ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"], number
         )
         if code:
             return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
@@ -173,10 +214,11 @@ class Workshop:
                 return Outcome("killed", first(r"^(?:FAILED|ERROR) (\S+)", said) or last_line(said))
         return Outcome("alive")
 
-    def call(self, command: list[object]) -> tuple[int, str]:
+    def call(self, command: list[object], number: int = 0) -> tuple[int, str]:
         """Return how a command ended, and what it said; all that it started ends with it."""
+        environment = self.environment | {switches.VARIABLE: str(number)}
         process = subprocess.Popen(
-            [*map(str, command)], cwd=SOURCE, env=self.environment, text=True, errors="replace",
+            [*map(str, command)], cwd=SOURCE, env=environment, text=True, errors="replace",
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True,
         )  # fmt: skip
         try:
@@ -203,6 +245,15 @@ class Place:
             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         )  # fmt: skip
 
+    def switched(self, number: int, mutant: Mutant) -> Outcome:
+        """Return what becomes of a mutant of the core that is in the build."""
+        if number not in self.workshop.switched:
+            return Outcome("not switched")
+        if (outcome := self.workshop.asked_of_ctest(number)).what == "killed":
+            return outcome
+        files = related_first(SOURCE, mutant.path)
+        return self.outcome(*self.run(files, {switches.VARIABLE: str(number)}))
+
     def tested(self, mutant: Mutant) -> Outcome:
         """Return what becomes of a mutant of the package."""
         file = self.site / mutant.path.removeprefix("python/")
@@ -215,6 +266,10 @@ class Place:
             code, said = self.run(self.workshop.those_that_run(mutant))
         finally:
             file.write_bytes(right)
+        return self.outcome(code, said)
+
+    def outcome(self, code: int, said: str) -> Outcome:
+        """Return what a run of pytest says of a mutant."""
         if code in (0, 5, NOT_ENDED):  # 5: no test is chosen
             return Outcome("alive")
         failed = r"^(?:FAILED|ERROR|ImportError while loading) (\S+)"
@@ -223,12 +278,14 @@ class Place:
             raise RuntimeError(f"pytest did not run: {said[-1000:]}")
         return Outcome("killed", by)
 
-    def run(self, tests: list[str]) -> tuple[int, str]:
+    def run(
+        self, tests: list[str], environment: Mapping[str, str] = MappingProxyType({})
+    ) -> tuple[int, str]:
         """Return how pytest ended with these tests, and what it said."""
         output = self.folder / "output.txt"
         order = {
             "site": str(self.site), "tests": tests, "output": str(output), "patience": NOTICED_IN,
-            "seconds": str(self.folder.with_suffix(".json")),
+            "seconds": str(self.folder.with_suffix(".json")), "environment": dict(environment),
             "arguments": [*PYTEST, "-m", KINDS[0], *sorted({t.partition("::")[0] for t in tests})],
         }  # fmt: skip
         if not tests:
