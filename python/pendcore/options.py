@@ -110,7 +110,7 @@ ON_FAILURE = RunOption(
 PROGRESS = RunOption(
     "progress",
     "Progress",
-    "Whether to show a bar, at once or never. A callable receives the fraction done, from 0 to 1.",
+    "Whether to show a bar, at once or never.\nA callable receives the fraction done, from 0 to 1.",
     type="bool or callable",
     if_none="a bar after a second, on a terminal",
 )

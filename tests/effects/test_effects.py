@@ -175,6 +175,7 @@ NO_EFFECTS = [
     (5, r"effects = 5: must be a list"),
     ([fx.Lock(1), "drag"], rf"effect 2 = 'drag': {NO_LIST}"),
     ([SINE], rf"effect 1 = Sinusoid\(.*: {NO_LIST}"),
+    ([print], r"effect 1 = .*: is a function: give pendcore\.effects\.User\(f\)"),
     ([fx.Lock], r"effect 1 = Lock: must be a pendcore\.effects object.* got the class itself"),
 ]
 

@@ -209,6 +209,16 @@ def test_forces_that_are_no_numbers_end_the_run_and_say_when():
     assert 0.9 < broken.t[-1] < 1.1
 
 
+@pytest.mark.parametrize("limit", [{"max_steps": 2000}, {"time_limit": 0.5}])
+def test_a_run_that_creeps_at_a_jump_of_a_law_says_so(limit):
+    sign = fx.User(lambda t, q, qd: -0.5 * np.sign(qd))
+    scene = pc.Scene(links=[ROD, ROD], effects=[sign])
+    sol = pc.simulate(scene, (0, 5), np.pi / 2, [0.1, 0.0], on_failure="ignore", **limit)
+    assert sol.message.endswith(
+        "is not friction that can hold a joint at rest: use DryJointFriction)"
+    )
+
+
 def test_a_function_lives_as_long_as_what_runs_under_it():
     def make():
         def own(t, q, qd):

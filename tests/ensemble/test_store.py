@@ -60,6 +60,8 @@ def test_a_store_has_the_bits_of_memory(tmp_path, plain, chunk):
 
 def test_a_store_and_an_npz_file_keep_all_of_it(stored, tmp_path, plain):
     plain.save(tmp_path / "all.npz")
+    with pytest.raises(ValueError, match=r"^path = '.*all.zarr'.*store=\"NAME.zarr\"\)$"):
+        plain.save(tmp_path / "all.zarr")
     for path in (stored, tmp_path / "all.npz"):
         found = pc.load(path)
         assert_same(found, plain)
@@ -153,7 +155,7 @@ def test_an_empty_folder_becomes_a_store(tmp_path, stored):
 ANOTHER = "another scene, or other options or events"
 OTHERS = [
     ({"rtol": 1e-6}, ANOTHER),
-    ({"t_span": (0, 4)}, ANOTHER),
+    ({"t_span": (0, 4)}, rf"{ANOTHER} \(t_end = 3.0, and now t_end = 4.0\): results"),
     ({"keep": "end"}, ANOTHER),
     ({"keep": {"other": pc.reducers.FirstEvent(OVER)}}, "other reducers"),
     ({"vary": None}, "other parameters that vary"),

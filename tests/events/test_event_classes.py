@@ -94,6 +94,7 @@ BAD: dict[str, Any] = {
     "TipLine: point: shape (3,): must": lambda: ev.TipLine((0, 1, 2), (0, 1)),
     "Function: f = 'f': must be a function of": lambda: ev.Function("f"),
     "Function: f.terminal = True: is not read": lambda: ev.Function(as_for_scipy),
+    "Function: f takes (t, y): must take (t, q, qd)": lambda: ev.Function(lambda t, y: t),
     "Function: samples = 0: must be 1 to": lambda: ev.Function(print, samples=0),
     "Function: max_step = 0.0: must be > 0": lambda: ev.Function(print, max_step=0),
     "RateZero: direction = 2: must be 1": lambda: ev.RateZero(joint=1, direction=2),
@@ -108,6 +109,7 @@ BAD: dict[str, Any] = {
     "events = 3: must be a list of pendcore.events": lambda: run(3),
     "event 1 = LinkAngle: must be a pendcore.events object": lambda: run([ev.LinkAngle]),
     "event 1 = 1: must be a list of pendcore.events": lambda: case_of(1),
+    "is a function: give pendcore.events.Function(f)": lambda: run([as_for_scipy]),
 }
 
 

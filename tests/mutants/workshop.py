@@ -32,6 +32,8 @@ KINDS = ("not outside_build", "outside_build")
 """The tests that build something outside the project come last."""
 SPEAK_OF_IT = 10
 """So many files of tests are asked of each mutant of the package, whatever lines they run."""
+ASKED_OF_CORE = 40
+"""So many files of tests, those that speak most of it, are asked of a mutant of the core."""
 SILENT = 90.0
 """A test that takes so long has lost its way, s."""
 NOTICED_IN = 240.0
@@ -69,11 +71,12 @@ class Workshop:
             shutil.rmtree(PLACE, ignore_errors=True)
             run(["git", "clone", "--quiet", ROOT, SOURCE])
         run(["git", "-C", SOURCE, "fetch", "--quiet"])
-        run(["git", "-C", SOURCE, "checkout", "--quiet", "--force", commit])
+        if not mutants or self.output("rev-parse", "HEAD").decode().strip() != commit:
+            run(["git", "-C", SOURCE, "checkout", "--quiet", "--force", commit])
         run([
             "cmake", "-G", "Ninja", "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release",
             "-DPENDCORE_PYTHON=ON", "-DPENDCORE_TESTS=ON", f"-DPython_EXECUTABLE={sys.executable}",
-            f"-Dpybind11_DIR={pybind11.get_cmake_dir()}", *self.options(),
+            f"-Dpybind11_DIR={pybind11.get_cmake_dir()}", f"-DCMAKE_CXX_FLAGS={self.flags()}",
         ])  # fmt: skip
         if not (self.built_with_switches() if mutants else self.built("all", "tests/cpp/all")):
             raise SystemExit(f"{commit} does not build: cmake --build {BUILD} says why")
@@ -83,36 +86,36 @@ class Workshop:
         self.core = self.bytes_of_core()
         self.tests_of_lines: coverage.TestsOfLines = {}
 
-    def options(self) -> list[str]:
-        """Return how CMake builds the core with switches: one clone has all mutants."""
+    def flags(self) -> str:
+        """Return what the compiler is told, so that mutants can be switched."""
         if not self.switched:
-            return ["-DPENDCORE_BASELINE_ONLY=OFF", "-DCMAKE_CXX_FLAGS="]
+            return ""
         header = PLACE / "switches.hpp"
         header.write_text(switches.HEADER)
-        return ["-DPENDCORE_BASELINE_ONLY=ON", f"-DCMAKE_CXX_FLAGS=-include {header} -w"]
+        return f"-include {header} -w"
 
     def built_with_switches(self) -> bool:
-        """Build all mutants at once; those go that do not compile so."""
-        right = {m.path: (SOURCE / m.path).read_bytes() for m in self.switched.values()}
-        try:
-            while True:
-                for path, source in right.items():
-                    there = {n: m for n, m in self.switched.items() if m.path == path}
-                    wrong = switches.switched(path, source, there)
-                    if (SOURCE / path).read_bytes() != wrong:
-                        (SOURCE / path).write_bytes(wrong)
-                command = ["cmake", "--build", BUILD, "--target", "all", "tests/cpp/all"]
-                code, said = self.call([*command, "--", "-k", "0"])
-                if not code:
-                    return True
-                out = switches.not_compiled(said, SOURCE, self.switched)
-                if not out:
-                    return False
-                for number in out:
-                    del self.switched[number]
-        finally:
+        """Build all mutants at once; those go that do not compile so, and are remembered."""
+        paths = {m.path for m in self.switched.values()}
+        right = {path: self.output("show", f"{self.commit}:{path}") for path in paths}
+        known = PLACE / f"not_switched.{self.commit}.json"
+        out = set(json.loads(known.read_text())) if known.exists() else set()
+        while True:
+            self.switched = {n: m for n, m in self.switched.items() if n not in out}
             for path, source in right.items():
-                (SOURCE / path).write_bytes(source)
+                there = {n: m for n, m in self.switched.items() if m.path == path}
+                wrong = switches.switched(path, source, there)
+                if (SOURCE / path).read_bytes() != wrong:
+                    (SOURCE / path).write_bytes(wrong)
+            command = ["cmake", "--build", BUILD, "--target", "all", "tests/cpp/all"]
+            code, said = self.call([*command, "--", "-k", "0"])
+            if not code:
+                return True
+            bad = switches.not_compiled(said, SOURCE, self.switched)
+            if not bad:
+                return False
+            out |= bad
+            known.write_text(json.dumps(sorted(out)))
 
     def measured(self, package: bool) -> Outcome:
         """Run all tests without a mistake; learn which of them run a line of the package."""
@@ -173,6 +176,10 @@ class Workshop:
             tests += [file for file in files if "subprocess" in (SOURCE / file).read_text()]
         return [test for test in tests if test != coverage.OUTSIDE]
 
+    def output(self, *words: str) -> bytes:
+        """Return what git says of the clone."""
+        return subprocess.check_output(["git", *words], cwd=SOURCE)
+
     def built(self, *targets: str) -> bool:
         return self.call(["cmake", "--build", BUILD, "--target", *targets])[0] == 0
 
@@ -184,11 +191,12 @@ class Workshop:
         return sha256(core.read_bytes()).hexdigest()
 
     def asked_of_ctest(self, number: int = 0) -> Outcome:
-        code, said = self.call(
-            ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"], number
-        )
-        if code:
-            return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
+        """Run the C++ tests; the hash of trajectories is quick, and sees most."""
+        ctest = ["ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", "300"]
+        for chosen in ("-R", "-E"):
+            code, said = self.call([*ctest, chosen, "trajectory_hash"], number)
+            if code:
+                return Outcome("killed", first(r"\d+ - (\S+) \(", said) or "ctest")
         return Outcome("alive")
 
     def asked_of_tests(
@@ -251,7 +259,7 @@ class Place:
             return Outcome("not switched")
         if (outcome := self.workshop.asked_of_ctest(number)).what == "killed":
             return outcome
-        files = related_first(SOURCE, mutant.path)
+        files = related_first(SOURCE, mutant.path)[:ASKED_OF_CORE]
         return self.outcome(*self.run(files, {switches.VARIABLE: str(number)}))
 
     def tested(self, mutant: Mutant) -> Outcome:

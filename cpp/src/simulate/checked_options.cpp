@@ -55,7 +55,9 @@ void check_times(const std::vector<double>& times, double t0, double t_end) {
     if (i > 0 && !((times[i] - times[i - 1]) * direction > 0.0)) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],
              "beyond t_eval[" + std::to_string(i - 1) + "] = " + text(times[i - 1]) +
-                 " in the direction of the run: sort the times, each once");
+                 (direction < 0.0 && times.front() < times.back()
+                      ? ", as t_span runs backward: reverse t_eval, or swap t_span"
+                      : " in the direction of the run: sort the times, each once"));
     }
   }
 }

@@ -27,9 +27,13 @@ std::string table_that_ends(const Scene& scene, double t, bool forward) {
   return {};
 }
 
-/// Whether a user's law seems to jump: every step across a jump is rejected.
-bool jumps_under_users(const Scene& scene, const Statistics& statistics) {
-  return has_functions(scene) && statistics.rejected > statistics.accepted;
+/// Whether a user's law seems to jump: steps across a jump are rejected, or are so short that the
+/// rest of the run would take some hundred million.
+bool jumps_under_users(const Scene& scene, const IntegratorState& integrator, double t_end) {
+  const Statistics& steps = integrator.statistics;
+  const double left = std::abs(t_end - integrator.t.high);
+  return has_functions(scene) &&
+         (steps.rejected > steps.accepted || std::abs(integrator.h) < 1e-8 * left);
 }
 
 /// What may be behind steps that became too small, if there are users' laws.
@@ -155,9 +159,10 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
            " stopped being finite: without ledger=True the motion can go on" + at() + ')';
   }
   message += at();
-  if (ending.status == Status::max_steps && jumps_under_users(scene, statistics)) {
+  const bool is_cut = ending.status == Status::max_steps || ending.status == Status::time_limit;
+  if (is_cut && jumps_under_users(scene, integrator, solution.t_end)) {
     message +=
-        "; most steps were rejected: a law of yours that jumps, as sign(w) does, is not "
+        "; it hardly gets on: a law of yours that jumps, as sign(w) does, is not "
         "friction that can hold a joint at rest: use DryJointFriction";
     return message + ')';
   }

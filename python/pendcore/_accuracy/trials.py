@@ -243,7 +243,6 @@ class Trials:
     ) -> Solution:
         """Return a trial with what is known of its error, or ``why`` nothing is known."""
         begin = self.start.t_start
-        is_whole = error is not None and error.is_complete and not error.is_lost
         solution.known_error = error
         solution.accuracy = Accuracy(
             asked=self.error,
@@ -251,7 +250,7 @@ class Trials:
             outcome=outcome,
             until=begin if error is None else error.valid_until(self.error, of="position"),
             times=0 if error is None else len(error.t),
-            everywhere=error is not None and error.is_dense and is_whole,
+            everywhere=error is not None and error.is_dense and error.tells_the_end,
             verified_by=why if error is None else error.verified_by,
             paid=self._bill(solution, error),
             seconds=monotonic() - self.began,

@@ -77,8 +77,9 @@ def simulate(
     Warns
     -----
     PendcoreWarning
-        If the start or the interval looks wrong, such as angles in degrees, or if the run does not
-        reach its end, unless ``on_failure`` says otherwise.
+        If the start or the interval looks wrong, such as angles in degrees (which is noticed only
+        where all are multiples of 5 and one is 15 or more), or if the run does not reach its end,
+        unless ``on_failure`` says otherwise.
 
     Notes
     -----

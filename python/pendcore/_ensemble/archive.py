@@ -22,6 +22,11 @@ ENTRY = "ensemble"
 
 def save(found: Ensemble, path: str | os.PathLike[str]) -> None:
     """Write an ensemble to a file, under just that name, and not before it is whole."""
+    if Path(path).suffix == ".zarr":
+        raise ValueError(
+            f"path = {os.fspath(path)!r}: a file of npz is written, which would not be a store: "
+            'name it .npz, or compute with pc.ensemble(store="NAME.zarr")'
+        )
     members, request = found.members, found.request
     starts = coordinates(members)
     told = about(members.scene, list(members.vary), request) | {

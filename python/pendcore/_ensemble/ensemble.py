@@ -386,7 +386,13 @@ class Ensemble:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
-        The file is complete or absent.
+        The file has just that name, and is complete or absent. Zarr stores are written while an
+        ensemble is computed: ``pc.ensemble(store="two.zarr")``.
+
+        Raises
+        ------
+        ValueError
+            If the name ends in ``.zarr``.
 
         Examples
         --------

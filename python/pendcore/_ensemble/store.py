@@ -11,6 +11,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -279,6 +280,9 @@ def continued(path: Path, members: Members, request: Request) -> Store:
         there = store.told[name]
         if there != value:
             what = f"pendcore {there}, not {value}" if name == VERSION else _OTHER[name]
+            if name == CASE:
+                lines = zip_longest(there.splitlines(), value.splitlines(), fillvalue="nothing")
+                what += " ({}, and now {})".format(*next(x for x in lines if x[0] != x[1]))
             raise ValueError(
                 f"store = {str(path)!r}: has results of {what}: results are never mixed; choose "
                 "another name, or remove it"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from inspect import signature
 from math import inf
 from numbers import Real
 from operator import index
@@ -97,9 +98,17 @@ def flag(name: str, value: object) -> bool:
 
 
 def function(name: str, value: object) -> object:
-    """Return a function of the user's."""
+    """Return a function of the user's, which takes three arguments."""
     if not callable(value):
         raise TypeError(f"{name} = {value!r}: must be a function of t, q, qd")
+    try:
+        parameters = signature(value)
+    except (TypeError, ValueError):
+        return value  # some functions in C do not tell
+    try:
+        parameters.bind(None, None, None)
+    except TypeError:
+        raise TypeError(f"{name} takes {parameters}: must take (t, q, qd)") from None
     return value
 
 

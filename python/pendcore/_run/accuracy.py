@@ -67,7 +67,9 @@ class Accuracy:
     everywhere : bool
         Whether these times lie within every step, so that the error is that of the whole curve.
     verified_by : str
-        What verified the run, or why nothing did if ``times`` is 0.
+        What verified the run, or why nothing did if ``times`` is 0. The defect is how far the curve
+        of the run misses the equations of motion, which bounds its error:
+        ``docs/background/defect.md``.
     paid : tuple of Paid
         All that was computed, in its order.
     seconds : float

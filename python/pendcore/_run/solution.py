@@ -157,12 +157,15 @@ class Solution:
         Returns
         -------
         ndarray, (2n,) or (2n, k)
-            q_1..q_n (rad), then qd_1..qd_n (rad/s).
+            q_1..q_n (rad), then qd_1..qd_n (rad/s), as in SciPy. The methods of `Scene` take times
+            along the first axis: ``q, qd = np.split(sol(t).T, 2, axis=-1)`` is what
+            ``scene.accelerations(t, q, qd)`` wants.
 
         Raises
         ------
         ValueError
-            If a time lies outside the run, or the run did not store its interpolants.
+            If a time lies outside the run, or the run did not store its interpolants: see
+            `with_dense_output`.
 
         Examples
         --------
@@ -234,7 +237,7 @@ class Solution:
 
     @property
     def can_resume(self) -> bool:
-        """Whether a limit or Ctrl-C ended the run, so that `resume` gets further."""
+        """Whether a limit or Ctrl-C ended the run before its ``t_end``, and `resume` gets there."""
         return self.status in ("max_steps", "max_turns", "time_limit", "interrupted")
 
     @property
@@ -549,7 +552,8 @@ class Solution:
             s; not before the end of this run, in its direction.
         t_eval : array_like, (k,), optional
             More times to keep, s: at or beyond the end of this run, and beyond its own ``t_eval``.
-            Only a run that had a ``t_eval`` takes it.
+            Only a run that had a ``t_eval`` takes it; without more times it keeps nothing later,
+            but ``y_reached`` has its end.
         max_steps, time_limit, on_failure, progress
             As in `simulate`, for the continuation. It begins before the first attempt that the
             earlier ``t_end`` cut short, because all later steps depend on that cut. Attempts that
@@ -600,7 +604,7 @@ class Solution:
     def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
 
-        The file is complete or absent. ``progress`` is as in `simulate`.
+        The file has just that name, and is complete or absent. ``progress`` is as in `simulate`.
 
         Examples
         --------

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from pendcore import _core
 from pendcore._messages.arguments import in_unit
 
-NUMBERS = {"int", "float", "optional float", "pair", "floats"}
 """The types of parameters that are numbers; the others are a part, an address or a function."""
 
 

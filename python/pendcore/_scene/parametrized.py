@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from functools import partial
 from typing import Any, NoReturn, Self, TypeVar
 
+_OF_FUNCTIONS = {"effect": "pendcore.effects.User(f)", "event": "pendcore.events.Function(f)"}
 _AN_OBJECT = {
     "link": "pendcore.Link object, such as Link(mass=1.0, length=1.0)",
     "effect": "pendcore.effects object, such as ViscousJoint(joint=1, damping=0.1)",
@@ -79,5 +80,7 @@ def tuple_of(
                 f"{noun} {i} = {value.__name__}: must be a {_AN_OBJECT[noun]}; got the class itself"
             )
         if not isinstance(value, kind):
+            if callable(value) and noun in _OF_FUNCTIONS:
+                remedy = f"is a function: give {_OF_FUNCTIONS[noun]}"
             raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
     return values

@@ -27,8 +27,6 @@ PAGE_MODULES = (
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
-PYTHON_ONLY_KINDS = ("user", "compiled_user")
-"""The kinds of effects that only Python has."""
 LEFT_OUT = {"error", "events", "progress", "on_failure"}
 """The options of a run that a page does without."""
 WITHOUT_CORE = (
@@ -56,7 +54,7 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     """
     case = solution.case()
     scene = solution.scene
-    own = any(effect.kind in PYTHON_ONLY_KINDS for effect in scene.effects)
+    own = any(effect.description.is_function for effect in scene.effects)
     has_events = bool(solution.events_asked_for())
     core = None if own else core_for_browsers()
     told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
@@ -133,7 +131,7 @@ def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
         "effect": [
             {"kind": one.kind, **_parameters(one)}
             for one in case.scene.effects
-            if one.kind not in PYTHON_ONLY_KINDS
+            if not one.description.is_function
         ],
         "start": {"q": case.q0, "qd": case.qd0},
         "run": {
@@ -164,8 +162,8 @@ def _method(case: Case, solution: Solution) -> str:
 
 def _descriptors() -> list[Any]:
     """Return what is known of effects and of their parts."""
-    known: dict[str, Any] = {**effects.kinds(), **effects.parts()}
-    return [one.description for name, one in known.items() if name not in PYTHON_ONLY_KINDS]
+    known = [*effects.kinds().values(), *effects.parts().values()]
+    return [one.description for one in known if not one.description.is_function]
 
 
 def _options() -> list[dict[str, Any]]:
@@ -188,7 +186,7 @@ def _defaults() -> dict[str, Any]:
     return {
         kind: _parameters(eval(one.description.calls[0], dict(classes)))
         for kind, one in effects.kinds().items()
-        if kind not in PYTHON_ONLY_KINDS
+        if not one.description.is_function
     }
 
 

@@ -64,8 +64,7 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
 
 
 def moves_of(solution: Solution, times: Floats) -> Moves:
-    """Return where a run is at the times of frames; it stays where it ends."""
-    solution = solution.with_dense_output()
+    """Return where a run with dense output is at the times of frames; it stays where it ends."""
     start, end = solution.t_span[0], solution.t_reached
     at = np.clip(times, min(start, end), max(start, end))
     states, scene = solution(at).T, solution.scene
