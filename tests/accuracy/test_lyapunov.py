@@ -270,10 +270,25 @@ def test_a_run_of_no_length_has_none() -> None:
 LONG = {"q0": [-2.0, -1.0], "t_span": (0, 3000)}
 
 
-def test_what_was_found_before_an_exception_is_not_lost() -> None:
-    class Enough(Exception):
-        pass
+class Enough(Exception):
+    pass
 
+
+def test_an_exception_of_an_effect_is_raised_with_what_was_found() -> None:
+    def push(t: float, q: Any, qd: Any) -> Any:
+        if t > 2.0:
+            raise Enough
+        return 0.0 * qd
+
+    pushed = rods(2).replace(effects=[pc.effects.User(push)])
+    with pytest.raises(Enough) as raised:
+        pc.lyapunov(pushed, (0, 3), [-2.0, -1.0])
+    so_far: pc.LyapunovExponents = raised.value.exponents  # type: ignore[attr-defined]
+    assert so_far.status == "callback_error"
+    assert 1.5 < so_far.t[-1] <= 2.0
+
+
+def test_what_was_found_before_an_exception_is_not_lost() -> None:
     def stop(fraction: float) -> None:
         if fraction > 0.05:
             raise Enough

@@ -13,7 +13,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterable
+from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
@@ -29,14 +29,15 @@ UNKNOWN = 0.3
 
 
 class Chosen:
-    """Lets the chosen tests of a run begin with the quickest, and files that run whole come last.
+    """Lets the chosen tests of a run begin with the quickest; files that run whole come last, in
+    the order that is given.
 
     They are not named to pytest: it would run each with all its parameters, not with the few of
     `make test`.
     """
 
-    def __init__(self, tests: Iterable[str], seconds: dict[str, float]) -> None:
-        self.tests = {*tests}
+    def __init__(self, tests: Sequence[str], seconds: dict[str, float]) -> None:
+        self.tests = {test: place for place, test in enumerate(tests)}
         self.seconds = seconds
 
     @pytest.hookimpl(trylast=True)
@@ -44,12 +45,13 @@ class Chosen:
         items[:] = [item for item in items if self.wants(item.nodeid)]
         items.sort(key=self.rank)
 
-    def rank(self, item: pytest.Item) -> tuple[bool, float]:
+    def rank(self, item: pytest.Item) -> tuple[int, float]:
         name = base(item.nodeid)
-        return name not in self.tests, self.seconds.get(name, UNKNOWN)
+        of_file = 0 if name in self.tests else 1 + self.tests[name.partition("::")[0]]
+        return of_file, self.seconds.get(name, UNKNOWN)
 
     def wants(self, name: str) -> bool:
-        return not self.tests.isdisjoint((base(name), name.partition("::")[0]))
+        return base(name) in self.tests or name.partition("::")[0] in self.tests
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         before = self.seconds.get(base(report.nodeid), 0.0)

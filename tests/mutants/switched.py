@@ -71,6 +71,20 @@ def switched(path: str, source: bytes, mutants: Mapping[int, Mutant]) -> bytes:
     return written(0, len(source), places).encode()
 
 
+def is_constant(source: bytes, mutant: Mutant) -> bool:
+    """Whether the compiler evaluates a mutant: it cannot be switched."""
+    tree = PARSERS[Path(mutant.path).suffix].parse(source)
+    node = tree.root_node.descendant_for_byte_range(mutant.start, mutant.end)
+    while node is not None and node.type != "compound_statement":
+        words = [
+            child.text for child in node.children if child.type in ("type_qualifier", "constexpr")
+        ]
+        if b"constexpr" in words or node.type in ("template_argument_list", "enumerator"):
+            return True
+        node = node.parent
+    return False
+
+
 def not_compiled(said: str, root: Path, mutants: Mapping[int, Mutant]) -> set[int]:
     """Return the mutants that GCC complains of: those on lines that it names, or the nearest."""
     found = re.findall(rf"{re.escape(str(root))}/(\S+?):(\d+):\d+: +(?:error|  required)", said)

@@ -107,6 +107,16 @@ def scene_of(stops):
     return pc.Scene(links=links(stops.chain), gravity=stops.chain.gravity, effects=found)
 
 
+def test_a_run_that_keeps_the_time_of_an_impact_has_the_state_after_it(fine):
+    stop = fx.JointStop(joint=2, range=(-0.3, 0.4), restitution=0.5)
+    case = {"scene": pc.Scene.textbook().replace(effects=[stop]), "q0": 0.1, "t_span": (0, 3)}
+    whole = pc.simulate(**case, **fine)
+    impacts = np.flatnonzero(np.diff(whole.t) == 0)
+    assert len(impacts) > 3
+    kept = pc.simulate(**case, **fine, t_eval=whole.t[impacts])
+    np.testing.assert_array_equal(kept.qd, whole.qd[impacts + 1])
+
+
 @pytest.mark.every_value("struck")
 @pytest.mark.parametrize("struck", [(n, capturing) for n in (1, 2, 3, 4) for capturing in (0, 1)])
 def test_stops_hit_at_once_share_the_impulse_by_complementarity(struck, method):
