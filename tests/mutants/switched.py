@@ -76,10 +76,8 @@ def is_constant(source: bytes, mutant: Mutant) -> bool:
     tree = PARSERS[Path(mutant.path).suffix].parse(source)
     node = tree.root_node.descendant_for_byte_range(mutant.start, mutant.end)
     while node is not None and node.type != "compound_statement":
-        words = [
-            child.text for child in node.children if child.type in ("type_qualifier", "constexpr")
-        ]
-        if b"constexpr" in words or node.type in ("template_argument_list", "enumerator"):
+        is_constexpr = b"constexpr" in [child.text for child in node.children]
+        if is_constexpr or node.type in ("template_argument_list", "enumerator"):
             return True
         node = node.parent
     return False
