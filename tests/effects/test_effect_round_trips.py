@@ -64,4 +64,4 @@ def test_a_scene_and_its_run_come_back_and_move_the_same(scene):
         return
     assert pickle.loads(pickle.dumps(run)).case() == run.case()
     assert run.case().options == case.options | {"method": run.method}
-    assert pc.read_case(pc.Case.of_solution(run).to_toml()).scene == scene
+    assert pc.read_case(run.case().to_toml()).scene == scene

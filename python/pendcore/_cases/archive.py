@@ -43,7 +43,7 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
         "q": solution.q,
         "qd": solution.qd,
         "y": solution.y,
-        "case": Case.of_solution(solution).to_toml(),
+        "case": solution.case().to_toml(),
         "statistics": json.dumps(solution.stats._asdict()),
         "version": _core.__version__,
     }
@@ -108,7 +108,7 @@ def _loaded(entries: Entries) -> Solution:
     accuracy = None if told is None else Accuracy.from_dict(told)
     verified = ErrorEstimate(**error) if error else None
     solution = Solution(_scene(state), run, case.name, accuracy, verified)
-    if Case.of_solution(solution) != case:
+    if solution.case() != case:
         raise ValueError("its case is not that of its run")
     return solution
 

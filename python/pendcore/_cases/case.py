@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import partial
 from math import pi
 from types import MappingProxyType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -103,25 +103,6 @@ class Case:
             q0=(pi / 4, pi / 3),
             t_span=(0.0, 5.0),
             options={"method": "ode45"},
-        )
-
-    @classmethod
-    def of_solution(cls, solution: Solution) -> Self:
-        """Return what was asked for when a solution was computed.
-
-        Examples
-        --------
-        >>> case = pc.Case.textbook()
-        >>> pc.Case.of_solution(case.simulate()).q0 == case.q0
-        True
-        """
-        asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
-        start = {key: asked.pop(key) for key in ("q0", "qd0")}
-        t_span = (asked.pop("t_start"), asked.pop("t_end"))
-        asked["events"] = tuple(solution.events_asked_for())
-        options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
-        return cls(
-            scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options
         )
 
     def simulate(self, *, on_failure: OnFailure | None = None) -> Solution:
@@ -234,3 +215,13 @@ def _toml(key: str, value: Any) -> str:
         # JSON's escapes are TOML's, but for the surrogate pairs that ensure_ascii would make.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     raise TypeError(f"{key} = {value!r}: cannot be written as TOML; leave it out of the case")
+
+
+def case_of(solution: Solution) -> Case:
+    """Return what was asked for when a solution was computed."""
+    asked = {key: _plain(value) for key, value in solution._run.arguments.items()}
+    start = {key: asked.pop(key) for key in ("q0", "qd0")}
+    t_span = (asked.pop("t_start"), asked.pop("t_end"))
+    asked["events"] = tuple(solution.events_asked_for())
+    options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
+    return Case(scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options)

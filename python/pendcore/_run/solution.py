@@ -597,9 +597,9 @@ class Solution:
         >>> np.array_equal(again.y, sol.y)
         True
         """
-        from pendcore._cases.case import Case
+        from pendcore._cases.case import case_of
 
-        return Case.of_solution(self)
+        return case_of(self)
 
     def save(self, path: str | os.PathLike[str], *, progress: Progress = None) -> None:
         """Write everything to a file of NumPy's npz format; see `pendcore.load`.
