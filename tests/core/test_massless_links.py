@@ -78,6 +78,7 @@ def case(name: str) -> tuple[pc.Scene, Rig, list[float], list[float]]:
     return scene_of(bodies, 9.81, described), rig, Q[: len(bodies)], rates
 
 
+@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", SCENES)
 def test_accelerations_reactions_and_energy_are_those_of_newton_and_euler(name: str) -> None:
     scene, rig, q, qd = case(name)

@@ -284,7 +284,7 @@ class Place:
         if code in (0, 5, NOT_ENDED):  # 5: no test is chosen
             return Outcome("alive")
         failed = r"^(?:FAILED|ERROR|ImportError while loading) (\S+)"
-        by = first(failed, said) or first(r"^((?:Timeout|Fatal Python error).*)", said)
+        by = first(failed, said) or first(r"(Timeout .*|Fatal Python error.*)", said)
         if not by:
             raise RuntimeError(f"pytest did not run: {said[-1000:]}")
         return Outcome("killed", by)
