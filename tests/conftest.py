@@ -16,8 +16,6 @@ from sweeps import every, few, random_examples
 
 VALUES = 4
 """Values of each parameter that a reduced sweep meets."""
-NOT_REDUCED = "tests/documents/"
-"""Tests of pages and of the code base are quick, and each page is a case."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -48,14 +46,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     functions: dict[str, list[Case]] = {}
+    long_sweeps = set()
     numbers: dict[tuple[str, str, int], int] = {}
     for item in items:
+        if item.get_closest_marker("few_cases") is not None:
+            long_sweeps.add(item.nodeid.partition("[")[0])
         if item.get_closest_marker("whole") is None:
             functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item, numbers))
     values, share = config.getoption("values"), config.getoption("share")
     kept = set()
     for name in every(functions, share):
-        keeps_all = share == 1 and name.startswith(NOT_REDUCED)
+        keeps_all = share == 1 and name not in long_sweeps
         cases = functions[name] if keeps_all else few(functions[name], values)
         kept |= {case.nodeid for case in cases}
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])

@@ -121,7 +121,10 @@ they are those after it.
 JUMPS_OF_FUNCTIONS = """## Forces that jump
 
 A function is taken to be smooth. At a jump the steps shrink until the errors are within the
-tolerances, or a run ends with `step_too_small`. If the times of the jumps are known, name them:
+tolerances, or a run ends with `step_too_small`. A law that jumps with the state, such as
+`-sign(w)`, may creep on for minutes before it ends with `max_steps`: try such a law with
+`time_limit=5`, and use `DryJointFriction` for friction. If the times of the jumps are known, name
+them:
 
 ```python
 def push(t, q, qd):

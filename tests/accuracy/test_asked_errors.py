@@ -113,7 +113,6 @@ KEPT = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", KEPT)
 def test_scenes_on_which_a_search_once_failed_are_kept(name):
     scene, q0, t_end, error, options = KEPT[name]

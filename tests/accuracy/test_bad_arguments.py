@@ -159,7 +159,6 @@ BAD: dict[str, tuple[Callable[..., Any], list[Row]]] = {
 }
 
 
-@pytest.mark.every_value("call")
 @pytest.mark.parametrize("call", BAD)
 def test_a_bad_argument_is_named(call: str) -> None:
     ask, bad = BAD[call]

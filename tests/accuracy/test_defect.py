@@ -85,6 +85,7 @@ def exact_couples(sol: pc.Solution) -> np.ndarray:
     return largest
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("scene", [BOOK, UNEVEN], ids=["two", "three"])
 @pytest.mark.parametrize("method", METHODS)
 def test_it_is_what_the_equations_of_each_link_say_in_forty_digits(

@@ -124,6 +124,7 @@ def spread_of_roundings(case: ChaoticStart) -> NDArray[np.float64]:
     return np.asarray(of_a_step * np.sqrt(steps * np.cumsum(left**2)))
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("case", chaotic_starts(), ids=lambda case: str(case.q0))
 def test_a_neighbour_in_many_digits_parts_at_that_rate(case: ChaoticStart) -> None:
     """The growths agree to the record's twelve decimals and the rounding of the run itself."""
@@ -170,7 +171,6 @@ SMOOTH: dict[str, list[pc.effects.Effect]] = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", SMOOTH)
 def test_under_effects_neighbours_part_at_that_rate(name: str) -> None:
     for n in (2,) if name == "user" else (2, 3, 4):

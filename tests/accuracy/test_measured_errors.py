@@ -137,7 +137,6 @@ MEASURED = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", MEASURED)
 def test_the_measured_error_is_at_most_what_is_told(name):
     case = MEASURED[name]

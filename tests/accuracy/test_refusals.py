@@ -77,7 +77,6 @@ REFUSED = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", REFUSED)
 def test_an_error_that_cannot_be_kept_is_refused_with_its_cause(name: str) -> None:
     q0, span, error, says, (low, high), scene = REFUSED[name]

@@ -34,6 +34,7 @@ SECONDS = 60.0
 """An answer may take this long, s: so few scenes must not time out on a busy machine."""
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("family")
 @pytest.mark.parametrize("seeds", SEEDS, ids=lambda seeds: f"{seeds.start}")
 @pytest.mark.parametrize("family", FAMILIES)
@@ -133,7 +134,6 @@ def broken(sol: pc.Solution) -> Claiming:
     raise RecursionError("too deep")
 
 
-@pytest.mark.every_value("mistake")
 @pytest.mark.parametrize(
     ("mistake", "which", "fault"),
     [

@@ -117,6 +117,7 @@ def described(effect: Any) -> tuple[str, dict[str, Any]]:
     }  # fmt: skip
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("family", sorted(set(FAMILIES) - {"stiff"}))
 def test_the_reference_knows_its_own_error(family: str) -> None:
     """More digits still confirm the error; the chains are short, since these digits take long."""
@@ -209,7 +210,6 @@ EXACT = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", EXACT)
 def test_a_rod_moves_as_a_closed_form_or_an_integral_says(name: str) -> None:
     of, known = EXACT[name]

@@ -44,6 +44,7 @@ def test_by_default_fifty_chaotic_runs_are_never_trusted_too_long() -> None:
     assert (valid / right).min() >= 0.5
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8, 1e-11, 1e-13, 1e-15])
 def test_at_any_tolerance_runs_are_never_trusted_too_long(method: str, rtol: float) -> None:

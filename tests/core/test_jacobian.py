@@ -94,6 +94,7 @@ def test_no_effect_at_all(n: int) -> None:
     check_drawn([], n, examples=3)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("n", [1, 2, 3])
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_effect_alone(kind: str, n: int) -> None:

@@ -78,7 +78,6 @@ def case(name: str) -> tuple[pc.Scene, Rig, list[float], list[float]]:
     return scene_of(bodies, 9.81, described), rig, Q[: len(bodies)], rates
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", SCENES)
 def test_accelerations_reactions_and_energy_are_those_of_newton_and_euler(name: str) -> None:
     scene, rig, q, qd = case(name)
@@ -115,6 +114,7 @@ def end_of_the_reference(name: str) -> NDArray[np.float64]:
     return y
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
 @pytest.mark.parametrize("name", SCENES)
 def test_every_method_follows_the_run_of_the_reference(name: str, method: str) -> None:

@@ -74,7 +74,6 @@ def test_a_case_stays_within_its_bound_over_the_whole_swing_from_row_0_or_near(n
     assert measured.off(measured.start()) <= {**FROM_ROW_0, **FITTED}[name]
 
 
-@pytest.mark.every_value("found")
 @pytest.mark.parametrize(
     ("name", "damping", "found"),
     [

@@ -27,6 +27,7 @@ METHODS = [method["name"] for method in _core.methods() if method["error_order"]
 pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("claim", [*ALWAYS, *SOMETIMES], ids=lambda claim: claim.__name__)
 @settings(derandomize=True, max_examples=random_examples(60))
 @given(run=any_runs(), data=st.data())

@@ -109,6 +109,7 @@ def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince
     return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("name", names())
 def test_trajectories_follow_the_multiple_precision_ones(name: str) -> None:
     case = trajectory(name)

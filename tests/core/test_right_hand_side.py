@@ -95,6 +95,7 @@ def test_the_corners_of_the_ratios_also_straight_and_folded(mass, length, q) -> 
     check_instant(rods, 9.81, (list(q), [2.0, -3.0]), SIXTY)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 10, 20])
 def test_the_mass_matrix_is_that_of_the_kinetic_energy(n: int) -> None:
     @settings(max_examples=random_examples(20 if n <= 10 else 3), deadline=None)

@@ -50,6 +50,7 @@ def same_steps(
 # To the last bit ------------------------------------------------------------------------------
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions(WITH_FRICTION), units=units)
 def test_other_units_of_mass_and_length_change_no_bit(method: str, run: Drawn, units: Units):
@@ -57,6 +58,7 @@ def test_other_units_of_mass_and_length_change_no_bit(method: str, run: Drawn, u
     same_steps(run, in_units(run, Units(units.kg, units.m)), method)
 
 
+@pytest.mark.few_cases
 @every_method
 @settings(max_examples=random_examples(140))
 @given(run=motions(WITH_FRICTION) | stopped_motions(WITH_FRICTION), units=units)
@@ -74,6 +76,7 @@ def test_other_units_of_mass_length_and_time_change_no_bit(method, run, units) -
         assert np.array_equal(other._run.ledger[name], entry * units.factor("J")), name
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions(MIRRORED))
 def test_upside_down_changes_no_bit(method: str, run: Drawn) -> None:
@@ -90,6 +93,7 @@ def test_every_kind_of_effect_has_its_mirror_images(kind: str) -> None:
             check_mirrored(run)
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions(LOSSLESS) | stopped_motions(LOSSLESS, (1.0,)))
 def test_without_losses_the_past_is_the_future_of_the_reversed_start(method: str, run: Drawn):
@@ -122,6 +126,7 @@ def check_mirrored(run: Drawn, **changes: object) -> None:
     check_near(-image[n:], one[n:])
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions())
 def test_left_to_right_is_the_mirrored_motion(method: str, run: Drawn) -> None:
@@ -137,6 +142,7 @@ def test_left_to_right_impacts_and_contact_are_the_mirrored_ones(method: str, se
     check_mirrored(drawn_motions.stopped_motion_of_seed(f"stopped/{seed}"), method=method)
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions())
 def test_a_turn_more_in_every_angle_is_the_same_motion(method: str, run: Drawn) -> None:
@@ -146,6 +152,7 @@ def test_a_turn_more_in_every_angle_is_the_same_motion(method: str, run: Drawn) 
     check_near(turned[n:], one[n:])
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions(UNDAMPED))
 def test_there_and_back_is_where_it_began(method: str, run: Drawn) -> None:
@@ -156,6 +163,7 @@ def test_there_and_back_is_where_it_began(method: str, run: Drawn) -> None:
     check_near(back._run.y_reached, [*run.q0, *run.qd0])
 
 
+@pytest.mark.few_cases
 @every_method
 @given(run=motions(sorted(MIRRORED - {"lock"})))
 def test_effects_of_no_strength_are_as_good_as_absent(method: str, run: Drawn) -> None:

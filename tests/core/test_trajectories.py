@@ -42,7 +42,6 @@ def written_out(case: Trajectory, t_end: float, tolerance: float, **options: Any
     return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance, **options)
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("method", ["dopri5", "auto"])
 @pytest.mark.parametrize("name", BOUNDS)
 def test_angles_and_rates_follow_the_multiple_precision_ones(name: str, method: str) -> None:
@@ -62,6 +61,7 @@ def test_the_textbooks_program_ends_where_octaves_ode45_does() -> None:
 # Two programs of one method differ by rounding, which the step size feels most: a rounding of
 # 1e-16 is 1e-10 of an error of 1e-6, and the motion magnifies it. So the runs are loose and not
 # long, and the method itself errs by far more than the bounds.
+@pytest.mark.few_cases
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 @pytest.mark.parametrize("direction", [1, -1], ids=["forward", "backward"])
 @pytest.mark.parametrize(

@@ -70,6 +70,7 @@ def test_every_kind_with_a_law_is_looked_at() -> None:
     assert sorted(SMOOTH) == sorted(LAWS)
 
 
+@pytest.mark.few_cases
 @every_chain
 def test_what_is_derived_is_what_the_core_computes(name: str, n: int) -> None:
     derivation, (solved, follows) = derived(name, n), evaluated(name, n)
@@ -92,6 +93,7 @@ def test_what_is_derived_is_what_the_core_computes(name: str, n: int) -> None:
             assert all(abs(x) <= 10 ** (5 - DIGITS) * size for x in left)
 
 
+@pytest.mark.few_cases
 @every_chain
 def test_the_energy_changes_by_the_powers_exactly(name: str, n: int) -> None:
     assert derived(name, n).energy_rate() == 0

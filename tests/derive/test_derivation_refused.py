@@ -82,6 +82,7 @@ def test_long_chains_are_refused_for_what_was_measured() -> None:
     assert "pendcore.simulate takes any number, by an O(n) recursion" in message
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("n", range(1, len(WRITTEN_OUT) + 1))
 def test_the_growth_is_what_the_message_says(n: int) -> None:
     made = derivation(pc.Scene(links=[ROD] * n))

@@ -63,6 +63,7 @@ def value(expression: Any, known: dict[Any, float]) -> float:
         return float(function(*(mpmath.mpf(known[symbol]) for symbol in symbols)))
 
 
+@pytest.mark.few_cases
 @every_chain
 def test_every_printed_equation_holds_on_a_motion_of_the_core(name: str, n: int) -> None:
     known, now = motion(name, n, seed=1)
@@ -200,6 +201,7 @@ def test_latex_is_written_as_the_textbook_prints() -> None:
     assert r"\tag{2.2}" in equation._repr_latex_()
 
 
+@pytest.mark.few_cases
 @every_chain
 def test_text_and_latex_are_read_back(name: str, n: int) -> None:
     """SymPy reads the text as what it was; LaTeX is balanced, and has no name that is not one."""
@@ -223,6 +225,7 @@ def test_text_and_latex_are_read_back(name: str, n: int) -> None:
         assert words <= {"vmatrix", "AB", "AC", "AP"}, latex
 
 
+@pytest.mark.few_cases
 @every_chain
 def test_the_steps_are_whole_in_every_form(name: str, n: int) -> None:
     derivation = derived(name, n)

@@ -57,6 +57,7 @@ def assert_close(found: Floats, wanted: Floats) -> None:
     assert off.max() < 1e-13
 
 
+@pytest.mark.few_cases
 @scenes
 def test_python_says_what_the_core_does_of_one_state_and_of_many(name: str) -> None:
     made, core, n = module(name), asked(name), len(SCENES[name].links)
@@ -73,6 +74,7 @@ def test_python_says_what_the_core_does_of_one_state_and_of_many(name: str) -> N
     np.testing.assert_allclose(one, many[..., 3], rtol=0, atol=1e-13 * np.abs(one).max())
 
 
+@pytest.mark.few_cases
 @scenes
 def test_powers_are_the_rate_of_the_energy(name: str) -> None:
     """The rate comes from small steps along the motion."""
@@ -176,6 +178,7 @@ def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
     return {name: np.array([next(rows).split() for _ in range(STATES)], float) for name in SCENES}
 
 
+@pytest.mark.few_cases
 @compiler
 @pytest.mark.outside_build
 @scenes
@@ -226,6 +229,7 @@ def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats
     return {name: np.array([next(rows) for _ in range(STATES)]) for name in SCENES}
 
 
+@pytest.mark.few_cases
 @octave
 @pytest.mark.outside_build
 @scenes
@@ -266,6 +270,7 @@ def test_the_book_s_lines_give_the_book_s_figure(tmp_path: Path) -> None:
         np.testing.assert_allclose(end, woven(run.q[-1], run.qd[-1]), rtol=0, atol=1e-7)
 
 
+@pytest.mark.few_cases
 @scenes
 def test_generated_code_says_what_wrote_it_and_fits_a_page(name: str) -> None:
     made = derived(name)

@@ -187,7 +187,6 @@ def test_no_left_side_of_a_worksheet_is_the_answer_to_a_blank(handed_out: Any) -
         (LEVEL, "Nothing acts on the chain but gravity and the joint that holds it."),
     ],
 )
-@pytest.mark.every_value("words")
 def test_a_worksheet_states_what_acts_and_what_its_symbols_are(case: pc.Case, words: str) -> None:
     text = given.asked(case).markdown().partition("## Derivation")[0]
     assert words in text
@@ -221,6 +220,7 @@ def test_a_converter_that_fails_is_told_of_and_costs_nothing_else(
     assert not [path for path in files if path.suffix in (".html", ".pdf")]
 
 
+@pytest.mark.few_cases
 @needs_pandoc
 @pytest.mark.outside_build
 def test_the_page_needs_no_other_file_and_no_network(handed_out: Any, tmp_path: Path) -> None:

@@ -84,6 +84,7 @@ def test_the_mechanism_is_drawn_as_it_starts_with_y_down(name: str) -> None:
     np.testing.assert_allclose(pins, expected, atol=1e-12)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("seed", range(30))
 def test_names_in_figures_lie_on_nothing(seed: int) -> None:
     """Names lie neither on each other nor on a link, as measured where they are drawn."""

@@ -192,6 +192,7 @@ def test_poses_are_at_the_kept_times_unless_others_are_asked_for():
     assert len(later.plot("strip", axes(), t=[0.3])) == 2
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("what", [kind for kind in KINDS if kind != "section"])
 @pytest.mark.parametrize("links", [1, 3])
 def test_every_figure_is_drawn_into_a_file(tmp_path, what, links):

@@ -17,7 +17,6 @@ def pair(request, tmp_path):
     return kept(tmp_path), dense()
 
 
-@pytest.mark.every_value("pair")
 def test_each_frame_of_a_film_is_the_dense_output(pair):
     kept, dense = pair
     if kept.accuracy is None:  # the runs that an error asks for depend on what is kept
@@ -78,6 +77,7 @@ def values(what, run, t):
     return [x for one in forces for x in (one[:, 0], one[:, 1], np.hypot(*one.T))]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("what", ["angles", "rates", "reactions", "energy"])
 @pytest.mark.parametrize("kept", ["times", "stop", "loaded", "resumed past events", "broken off"])
 def test_each_curve_over_time_is_the_dense_output(kept, what, tmp_path):

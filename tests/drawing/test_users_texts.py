@@ -49,6 +49,7 @@ def test_a_film_shows_the_name_of_every_run(sol):
     figure.draw_without_rendering()
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("what", ["angles", "reactions", "energy", "path", "phase"])
 @pytest.mark.parametrize("name", NAMES)
 def test_a_figure_shows_its_label(sol, what, name):

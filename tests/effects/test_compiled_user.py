@@ -21,7 +21,6 @@ DATA = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", DATA)
 def test_data_that_a_function_would_misread_is_refused(name):
     data, told = DATA[name]
@@ -89,7 +88,6 @@ def library_function(restype=ctypes.c_int, *argtypes):
     return function
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", WRONG)
 def test_a_function_of_another_signature_is_refused_with_the_right_one(name):
     returns, *takes = WRONG[name]
@@ -109,7 +107,6 @@ def test_a_function_of_another_signature_is_refused_with_the_right_one(name):
         assert fx.CompiledUser(mended(lambda *_: None)).address
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", RIGHT)
 def test_a_function_that_reads_what_it_is_handed_is_taken(name):
     returns, *takes = RIGHT[name]

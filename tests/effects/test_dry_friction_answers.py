@@ -65,6 +65,7 @@ def test_constant_friction_stops_the_rod_after_its_momentum_over_the_friction(
     assert lost[-1] == pytest.approx(energy, rel=1e-11)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize(
     ("static", "velocity", "exponent"),
@@ -104,6 +105,7 @@ def own_tolerance(method: str, rtol: float) -> float:
     return 0.1 * rtol ** (2 / 3) if method == "radau5" else rtol
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("atol", [1e-12, None], ids=["atol=1e-12", "atol=rtol/100"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("law", NARROW_PEAKS, ids=repr)

@@ -93,7 +93,6 @@ MOTIONS: dict[str, tuple[list[fx.Effect], OfTime | None, OfTime | None, str]] = 
 }  # fmt: skip
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("speed", [3.0, 20.0])
 @pytest.mark.parametrize("name", MOTIONS)
 def test_a_rod_turns_and_books_its_work_as_its_equation_is_solved(name: str, speed: float) -> None:

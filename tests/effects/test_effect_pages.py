@@ -44,7 +44,6 @@ def run(kind: str) -> dict[str, Any]:
     return names
 
 
-@pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_examples_of_a_page_run_and_book_what_it_says(kind, capsys):
     names, cls = run(kind), KINDS[kind]

@@ -32,6 +32,7 @@ def assert_comes_back(one):
         assert type(again) is type(one)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("kind", sorted(KINDS))
 @given(data=st.data())
 @settings(max_examples=random_examples(30))

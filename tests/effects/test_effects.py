@@ -152,7 +152,6 @@ TYPES = {
 NAMES = {**vars(fx), "nan": np.nan, "inf": np.inf, "SINE": SINE}
 
 
-@pytest.mark.every_value("call")
 @pytest.mark.parametrize("call", [*VALUES, *TYPES])
 def test_a_mistake_is_told_with_class_parameter_value_and_remedy(call):
     name, error = call.partition("(")[0], TypeError if call in TYPES else ValueError

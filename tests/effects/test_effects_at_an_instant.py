@@ -45,7 +45,6 @@ COUPLES: list[tuple[str, dict[str, Any], float]] = [  # at 0.4 s, -2.4 rad and -
 ]
 
 
-@pytest.mark.every_value("told")
 @pytest.mark.parametrize(("kind", "told", "couple"), COUPLES)
 def test_a_couple_turns_a_rod_of_1_kg_m2(kind: str, told: dict[str, Any], couple: float) -> None:
     """The core's law and the reference's."""

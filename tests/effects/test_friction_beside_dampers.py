@@ -106,6 +106,7 @@ def angles_of_a_pushed_rod(damping: float, friction: float, times: list[float]) 
     return [float(angle * b) for angle in angles]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["auto", "radau5", "dopri5-radau5"])
 @pytest.mark.parametrize("damping", [10.0**k for k in range(1, 13)])
 def test_a_pushed_rod_slides_and_sticks_as_the_closed_form_has_it(

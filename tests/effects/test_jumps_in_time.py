@@ -104,6 +104,7 @@ def test_at_a_jump_the_acceleration_is_that_after_it(name: str) -> None:
     np.testing.assert_allclose(force, 1.5 * np.array(held), rtol=1e-12)  # m c qdd
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize(("name", "method"), CASES)
 @pytest.mark.parametrize("sense", [1, -1])
 def test_a_run_resumed_between_jumps_and_at_one_has_the_bits_of_one_run(

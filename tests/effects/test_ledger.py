@@ -114,7 +114,6 @@ def test_every_effect_is_among_them() -> None:
     assert {kind for kind, _ in LOCKED} == {*pc.effects.kinds()}
 
 
-@pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [*SMOOTH, "bare"])
 def test_the_balance_closes_with_an_effect_alone(kind: str) -> None:
     # Dry friction slides all the time in this.

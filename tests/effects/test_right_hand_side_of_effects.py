@@ -87,6 +87,7 @@ def test_every_kind_of_effect_has_a_law_in_the_reference() -> None:
     assert sorted(LAWS) == KINDS
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=random_examples(30), deadline=None)
 @given(data=st.data())
@@ -95,6 +96,7 @@ def test_an_effect_alone_and_on_a_moving_pivot(kind: str, data: st.DataObject) -
     check_instant(data.draw(rigs(sorted({kind, "driven_pivot"}), short)))
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("kind", KINDS)
 @settings(max_examples=random_examples(8), deadline=None)
 @given(data=st.data())
@@ -215,7 +217,6 @@ def check_lagrange(drawn: DrawnRig) -> None:
         assert abs(left - force) < TINY * (1 + loads.couples[i].size)
 
 
-@pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [*KINDS, "all"])
 @settings(max_examples=random_examples(10), deadline=None)
 @given(data=st.data())

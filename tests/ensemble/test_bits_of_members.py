@@ -61,6 +61,7 @@ def of_single_runs(name, method):
     return bits(assert_runs(SCENES[name], **asked(SCENES[name], method)))
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ADAPTIVE)
 @pytest.mark.parametrize("name", SCENES)
 def test_threads_and_chunks_change_no_bit(name, method, tmp_path):

@@ -20,6 +20,7 @@ STARTS = starts(40, 2, 1, 2.0)
 PLAIN = {"q0": STARTS, "t_span": (0, 3)}
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("chunk", [1, 7, 1000])
 @pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
 def test_an_executor_changes_nothing(kind, chunk):

@@ -72,6 +72,7 @@ def test_no_code_runs_from_a_group_of_zarr_2(tmp_path):
     assert mark.exists()  # Zarr itself runs the code: else this shows nothing
 
 
+@pytest.mark.few_cases
 @pytest.mark.usefixtures("unpickling")
 @pytest.mark.parametrize("name", ["time", "q0", "q", "status"])
 @pytest.mark.parametrize("where", ["beside", "instead", "consolidated"])
@@ -155,6 +156,7 @@ PLACES = [("", key) for key in ["", *GROUP]] + [
 ]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize(("name", "key"), PLACES)
 def test_every_wrong_kind_of_every_attribute_is_told_in_one_sentence(copied, name, key):
     document = copied / name / "zarr.json"
@@ -184,7 +186,6 @@ def archived(tmp_path_factory, plain):
         return dict(entries)
 
 
-@pytest.mark.every_value("key")
 @pytest.mark.parametrize("key", ARCHIVED)
 def test_every_wrong_kind_of_what_an_archive_tells_is_refused_in_one_sentence(
     tmp_path, archived, key
@@ -235,7 +236,6 @@ CHANGED += [  # more blocks than a folder holds
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("values")
 @pytest.mark.parametrize(("name", "values", "told"), CHANGED)
 def test_what_could_do_harm_is_refused(tmp_path, timed, name, values, told):
     path = tmp_path / "a.zarr"
@@ -245,7 +245,6 @@ def test_what_could_do_harm_is_refused(tmp_path, timed, name, values, told):
         pc.load(path)
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", ["time", "q0", "gravity", "q", "status", "over"])
 def test_an_array_that_is_missing_is_named(tmp_path, stored, timed, name):
     path = tmp_path / "a.zarr"

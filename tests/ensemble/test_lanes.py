@@ -24,6 +24,7 @@ def long_chain(n):
     return pc.Scene(links=[pc.Link(mass=0.1, length=0.1)] * n)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("name", ALL)
 def test_scenes_have_lanes_up_to_100_links_unless_they_switch(name):
     for n in (1, 2, 3, 4, 5, 9):
@@ -44,6 +45,7 @@ def test_which_methods_have_lanes_is_told():
         assert "a lane each, by taylor; it runs them one by one" in five
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("name", "n")
 @pytest.mark.parametrize("rtol", [1e-2, 1e-3, 1e-7, 1e-12])
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8, 9])
@@ -163,7 +165,6 @@ VARIED = {  # links, effects, methods, and the parameters that differ from lane 
 }  # fmt: skip
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", VARIED)
 def test_parameters_differ_from_lane_to_lane(name):
     """A wave or a drag of 0 gives its member other equations: it runs alone."""

@@ -20,6 +20,7 @@ EVENTS = {
 }
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "auto"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-10])
 @pytest.mark.parametrize("terminal", [False, True, 3])
@@ -33,6 +34,7 @@ def test_first_events_are_those_of_simulate(name, terminal, rtol, method):
         assert_runs(BOOK, q0, 0.25, t_span, firsts=first, **how)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor"])
 @pytest.mark.parametrize("terminal", [False, True])
 @pytest.mark.parametrize(("n", "effects"), [(3, "bare"), (3, "drag"), (1, "bare"), (5, "bare")])
@@ -83,6 +85,7 @@ def with_methods(name, count):
         yield scene, starts(count, len(scene.links), 5, 2.5), {"method": method}
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("name")
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
 @pytest.mark.parametrize("times", TIMES)
@@ -93,6 +96,7 @@ def test_states_at_times_in_lanes_are_those_of_single_runs(name, times, rtol):
         assert_runs(scene, q0, 0.3, (0, 2), times=TIMES[times], **how)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("name", SCENES)
 def test_times_of_runs_backward_cut_short_and_ended_by_an_event(name):
     """Times after the event are not kept."""

@@ -102,7 +102,6 @@ ENDS = {  # what happens, what is told, and how it is mended
 
 
 @pytest.mark.unsanitized
-@pytest.mark.every_value("end")
 @pytest.mark.parametrize(
     "end", [pytest.param(end, marks=root_may if end == "forbidden" else ()) for end in ENDS]
 )
@@ -124,6 +123,7 @@ def test_whatever_ends_a_run_the_same_call_goes_on_to_the_same_bytes(tmp_path, s
         assert contents(path) == contents(stored)
 
 
+@pytest.mark.few_cases
 @pytest.mark.unsanitized
 @pytest.mark.parametrize("kind", [None, "threads", "processes"])
 @pytest.mark.parametrize("lost", [move, move_its_parent, remove, empty])

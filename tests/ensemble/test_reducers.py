@@ -28,6 +28,7 @@ def reduced(scene, q0, keep, **asked):
     return found
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "taylor", "radau5", "auto"])
 @pytest.mark.parametrize("name", SCENES)
 def test_extremes_are_those_of_the_dense_output(name, method):
@@ -121,6 +122,7 @@ def numbers(whole, member, names):
     return np.concatenate([np.ravel(x) for x in (*states, *(whole[x][member] for x in names))])
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("beside", ["nothing", "an event"])
 @pytest.mark.parametrize("name", SMOOTH)

@@ -23,7 +23,6 @@ ASKED = {
 }
 
 
-@pytest.mark.every_value("asked")
 @pytest.mark.parametrize("scene", [BOOK, SHAKEN], ids=["bare", "shaken"])
 @pytest.mark.parametrize("asked", ASKED)
 def test_they_are_those_of_single_runs(scene, asked):

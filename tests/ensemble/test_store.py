@@ -319,6 +319,7 @@ def with_one_other_bit(chunk):
     return chunk[:place] + bytes([chunk[place] ^ 1]) + chunk[place + 1 :]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("damaged", [without_its_end, with_one_other_bit])
 @pytest.mark.parametrize("name", ["q", "status", "extremes"])
 def test_a_chunk_that_is_damaged_is_named_and_can_be_made_anew(copied, stored, name, damaged):

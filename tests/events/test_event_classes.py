@@ -32,7 +32,6 @@ def case_of(*events):
     return pc.Case(scene=BOOK, q0=(0.8, 1.0), t_span=(0, 3), options={"events": events})
 
 
-@pytest.mark.every_value("event")
 @pytest.mark.parametrize("event", KEPT, ids=repr)
 def test_an_event_comes_back_from_its_repr_pickle_copy_and_toml(event):
     assert eval(repr(event)) == event
@@ -113,7 +112,6 @@ BAD: dict[str, Any] = {
 }
 
 
-@pytest.mark.every_value("message")
 @pytest.mark.parametrize("message", BAD)
 def test_what_is_no_event_is_refused_by_name(message):
     with pytest.raises((ValueError, TypeError), match=re.escape(message)):
@@ -134,7 +132,6 @@ FILES = {
 FILE = "\n[[link]]\nmass = 1\nlength = 1\n[start]\nq = 1\n[[event]]\n{}\n[run]\nt_end = 1\n"
 
 
-@pytest.mark.every_value("table")
 @pytest.mark.parametrize("table", FILES)
 def test_what_is_no_event_in_a_file_is_told_with_its_line(table):
     with pytest.raises(ValueError, match=re.escape(FILES[table])):
@@ -163,7 +160,6 @@ DAMAGE: dict[str, Any] = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("field")
 @pytest.mark.parametrize("field", DAMAGE)
 def test_damaged_events_are_refused(field):
     sol = pc.simulate(BOOK, (0, 1), [0.8, 1.0], events=[ev.LinkAngle(1, 1.0)])

@@ -194,6 +194,7 @@ def swing(amplitude, mark=0.0):
         return float(4 * quarter), float(quarter + past)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("short", [1e-2, 1e-5, 1e-8, -1e-9])
 def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing(short, sign, fine):

@@ -49,6 +49,7 @@ def test_each_bounce_is_an_event_with_the_states_on_both_sides(store, fine):
                 np.testing.assert_array_equal(sol(one.t), one.y_after)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("joint", [2, 3])
 def test_a_mark_at_the_very_angle_of_a_stop_is_met_once_an_impact(joint, e, method):
@@ -240,6 +241,7 @@ def test_entering_stick_is_one_rate_zero_in_a_run_that_goes_on(rtol, method):
     assert all(found.qd[0] == 0.0 for found in sol.events[0])
 
 
+@pytest.mark.few_cases
 def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine):
     """A rod of inertia 1 under -(sin t + 0.2) leaves a plastic stop where sin t = -0.2."""
     push = fx.Motor(joint=1, sinusoid=fx.Sinusoid(amplitude=-1.0, angular_frequency=1.0))
@@ -262,6 +264,7 @@ def test_leaving_a_contact_is_no_rate_zero_and_coming_into_it_is_one(fine):
     assert touches[0].y_after.tolist() == [0.0, 0.0]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("held_by", ["a stop", "friction"])
 @pytest.mark.parametrize("joint", [1, 2])
 def test_what_is_let_go_sets_out_one_way_at_ordinary_tolerances_too(joint, held_by, method):

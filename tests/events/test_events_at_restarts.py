@@ -51,6 +51,7 @@ def restarts(kind, method, sense, seeds):
             yield pc.simulate(scene, span, *start, **options), sol.resume(span[1])
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("kind", KINDS)
@@ -104,6 +105,7 @@ LOOPS = {  # the event, the scene, its start, the first torque's sign, times of 
 }
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("loop")
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("method", METHODS)

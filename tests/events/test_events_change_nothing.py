@@ -76,6 +76,7 @@ def options_of(method, store):
     return {"method": method, "step": step, "rtol": 1e-6, "atol": 1e-9} | STORES[store]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ERROR_ORDERS)
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize("store", STORES)
@@ -94,6 +95,7 @@ def test_watching_changes_no_bit_whatever_is_stored(method, scene, store):
     assert sum(map(len, watched.events)) > 20
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ERROR_ORDERS)
 @pytest.mark.parametrize("scene", ["book", "moved"])
 @pytest.mark.parametrize("store", STORES)

@@ -84,6 +84,7 @@ def test_a_spinning_tip_crosses_a_line_twice_a_turn(step, sense, method):
     assert directions(found) == [-1, 1] * (len(found) // 2) + [-1] * (len(found) % 2)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("pivot", PIVOTS)
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("start", [[-1.4, -1.1, 0.3], [0.8, 1.0, 1.2], [0.1, -2.0, 3.0]])

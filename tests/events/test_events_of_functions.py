@@ -91,7 +91,6 @@ def test_an_exception_ends_the_run_and_passes_through(at):
     assert len(longer.events[1]) == 1
 
 
-@pytest.mark.every_value("value")
 @pytest.mark.parametrize(
     ("value", "error", "message"),
     [

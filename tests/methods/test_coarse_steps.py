@@ -74,7 +74,6 @@ def between(sol):
     return sol(np.linspace(sol.t[0], sol.t[-1], 4000))
 
 
-@pytest.mark.every_value("scene")
 @pytest.mark.parametrize("scene", COARSE)
 def test_a_coarse_step_is_finite_all_along_and_not_said_to_chatter(scene):
     links, effects, q0, qd0, span, options = COARSE[scene]

@@ -112,7 +112,6 @@ def rounded(value):
     return [rounded(x) for x in value] if isinstance(value, list) else float(value)
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", RADAU)
 def test_radau5_has_the_exact_numbers_rounded_once(name):
     assert _core.tableau("radau5")[RADAU[name]] == rounded(EXACT[name])

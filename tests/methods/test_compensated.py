@@ -52,7 +52,6 @@ SUMS = {  # start, rate, end, options, last bits by which a carried and a rounde
 }  # fmt: skip
 
 
-@pytest.mark.every_value("sums")
 @pytest.mark.parametrize("sums", SUMS)
 def test_increments_add_up_to_the_last_bit(sums):
     """Without gravity the rate stays, and the angle is a sum; each increment is rounded alike."""
@@ -134,7 +133,6 @@ def test_a_low_part_of_another_state_is_refused():
         run.resume(2.0, None, 1000, None, None)
 
 
-@pytest.mark.every_value("method")
 @pytest.mark.parametrize("method", METHODS)
 def test_methods_that_cannot_are_refused_by_name(method):
     step = None if METHODS[method]["error_order"] else 0.01

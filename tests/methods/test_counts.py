@@ -37,6 +37,7 @@ def beyond(sol, joint, bound):
     return float((q[-1] - (q[-2] if joint > 1 else 0) - bound).max())
 
 
+@pytest.mark.few_cases
 def test_over_ten_thousand_seconds_no_bounce_is_missed_and_nothing_gets_through(method):
     t_end, bound, first = 1e4, BOTTOM - 0.3, time_to("0.3")
     stop = fx.JointStop(joint=1, range=(-9.0, bound), restitution=1.0)
@@ -62,6 +63,7 @@ def test_bounces_of_a_driven_chain_stay_within_the_range_for_a_thousand_seconds(
     assert beyond(sol, 2, 0.25) <= 1e-13
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("store", ["end", "dense"])
 def test_over_five_thousand_seconds_every_crossing_is_found_once(store, method):
     t_end, marks = 5000.0, ["0", "0.5", "0.99999"]

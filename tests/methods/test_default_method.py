@@ -47,7 +47,6 @@ def test_to_name_no_method_is_to_name_the_rule():
     assert_same(default(BOOK, method="auto"), default(BOOK))
 
 
-@pytest.mark.every_value("scene")
 @pytest.mark.parametrize(
     ("scene", "how", "method"),
     [

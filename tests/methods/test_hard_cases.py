@@ -199,6 +199,7 @@ def time_of_fall(links):
     return t
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("links", [1, 2])
 def test_upright_falls_when_theory_says(method, links):
     # a bit of the start, 2e-16 rad, is 2e-7 of what grows by e^7.2 a second: less than 1e-7 s
@@ -378,7 +379,6 @@ def test_a_fork_may_simulate_too():
     assert os.read(reader, 32) == here.tobytes()
 
 
-@pytest.mark.every_value("method")
 @pytest.mark.parametrize("method", [one["name"] for one in pc._core.methods()])
 def test_backward_is_the_mirror_of_forward(method):
     how = {"method": method} | ({} if method != "rk4" else {"step": 0.01})

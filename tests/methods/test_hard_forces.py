@@ -50,6 +50,7 @@ def test_what_is_no_number_beyond_a_time_or_an_angle_ends_there(at, beyond):
     assert sol.t[-1] <= at + np.spacing(at)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", [method["name"] for method in _core.methods()])
 @pytest.mark.parametrize("links", [1, 2, 3])
 @pytest.mark.parametrize("rtol", [1e-9, 1.0, 1e30])
@@ -153,6 +154,7 @@ def test_a_pulse_that_grows_within_the_last_bits_of_time_knocks_a_stuck_rod_as_f
     assert time_of_rest(sol) == pytest.approx(at + past, abs=1e-9 + last_bits)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize(("half", "how"), [(0.05, {}), (1e-3, {"max_step": 5e-4})])
 def test_a_narrow_pulse_of_ones_own_knocks_a_stuck_rod_where_max_step_is_as_short(
     half, how, method
@@ -182,6 +184,7 @@ def two(mass=1.0, length=1.0):
         return pc.Scene(links=[pc.Link(mass=1, length=1), pc.Link(mass=mass, length=length)])
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("ratio", [1e-12, 1e-6, 1e6, 1e12])
 def test_extreme_ratios_of_mass_keep_energy_and_motion(ratio, fine):
     """Large swings over the period of a slow small one, beside a dense matrix in NumPy."""

@@ -46,6 +46,7 @@ RUNS = {  # the case, end, tolerances, first step
 }  # fmt: skip
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("name", RUNS)
 def test_runs_take_the_steps_of_the_method_written_out_in_python(name):
     case, t_end, tolerances, first_step = RUNS[name]

@@ -220,7 +220,6 @@ def test_a_pair_is_its_first_method_where_nothing_is_stiff(pair):
         ("auto", "controller at its limit", START),
     ],
 )
-@pytest.mark.every_value("case")
 def test_a_pair_changes_over_once_and_says_when(case):
     pair, effects, q0 = case
     sol = run(effects, 5, q0, method=pair, max_steps=30_000)

@@ -166,7 +166,6 @@ CARRIED = [(smooth, n) for n in (1, 2, 3, 5, 9)]
 CARRIED += [(effects, n) for effects in (changing, rubbed) for n in (1, 2, 3)]
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", CARRIED, ids=lambda case: f"{case[0].__name__}-{case[1]}")
 def test_chains_with_every_effect_that_has_a_series_move_as_other_methods_say(case):
     effects, n = case
@@ -231,7 +230,6 @@ def test_a_unit_of_time_that_no_run_wrote_is_refused(factor):
 KINDS = pc.effects.kinds()
 
 
-@pytest.mark.every_value("kind")
 @pytest.mark.parametrize("kind", [k for k, c in KINDS.items() if not issubclass(c, OwnEffect)])
 def test_the_cost_of_a_series_is_measured_with_every_kind_of_effect_that_has_one(kind):
     """An effect that is added goes into EFFECTS of docs/generators/series_work.py, which is run."""
@@ -245,7 +243,6 @@ def test_the_cost_of_a_series_is_measured_with_every_kind_of_effect_that_has_one
             pc.simulate(scene, (0, 0.1), [0.7, 0.8], method="taylor")
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize(("name", "scene"), list(scenes()))
 def test_the_series_is_forecast_to_take_longer_for_more_digits_and_where_links_are_many(
     name, scene

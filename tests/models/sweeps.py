@@ -1,8 +1,8 @@
 """The cases of a parametrised test that run: all of them, or few that meet every parameter.
 
-`make test` runs few, so that a newcomer need not wait; `make test-all` runs all. No test function
-is left out: a reduced sweep keeps some values of each parameter, and each of these at least once,
-and a third of the random examples.
+`make test` runs few of those that take long, which are marked `few_cases`, so that a newcomer need
+not wait; `make test-all` runs all. No test function is left out: a reduced sweep keeps some values
+of each parameter, and each of these at least once, and a third of the random examples.
 """
 
 from __future__ import annotations

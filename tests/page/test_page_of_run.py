@@ -35,7 +35,6 @@ def test_it_opens_from_disk_and_asks_for_nothing(page, browser):
     assert sum(url.startswith("file:") for url in asked) == 1
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", CASES)
 def test_the_core_in_the_page_has_the_bits_of_python(name, opened):
     effects, options = CASES[name]

@@ -103,7 +103,6 @@ NO_SOLUTION = {
 }
 
 
-@pytest.mark.every_value("what")
 @pytest.mark.parametrize("what", NO_SOLUTION)
 def test_a_file_that_is_no_solution_is_named(sol, saved, entries, what, tmp_path):
     change, why = NO_SOLUTION[what]
@@ -167,7 +166,6 @@ HOSTILE |= {  # a pickle among them: it would run what it says
 }
 
 
-@pytest.mark.every_value("what")
 @pytest.mark.parametrize("what", HOSTILE)
 def test_a_hostile_entry_is_refused_before_it_is_unpacked(saved, what, tmp_path):
     name, content, zeros, words = HOSTILE[what]

@@ -133,7 +133,6 @@ MASKED = {
 }
 
 
-@pytest.mark.every_value("taken", "form")
 @pytest.mark.parametrize("form", MASKED)
 @pytest.mark.parametrize("taken", TAKEN | ALSO_TAKEN)
 def test_masked_values_are_refused_where_numbers_are_taken(taken, form):

@@ -50,7 +50,6 @@ NO_VECTORS = NO_NUMBERS | {
 NO_VECTORS["a list of itself"].append(NO_VECTORS["a list of itself"])
 
 
-@pytest.mark.every_value("name", "value")
 @pytest.mark.parametrize("name", ["q0", "qd0", "rtol", "atol", "t_eval"])
 @pytest.mark.parametrize("value", NO_VECTORS)
 def test_what_is_no_real_number_is_refused(name, value):
@@ -68,7 +67,6 @@ SINGLE = {name: [lambda x, name=name: simulate(**{name: x})] for name in OPTIONA
 }
 
 
-@pytest.mark.every_value("name", "value")
 @pytest.mark.parametrize("name", SINGLE)
 @pytest.mark.parametrize("value", [*NO_NUMBERS.values(), ["a", "b"], [None, 1]], ids=repr)
 def test_neither_is_it_taken_for_settings_times_or_states(name, value):
@@ -105,7 +103,6 @@ WRONG = [
 ]
 
 
-@pytest.mark.every_value("pair")
 @pytest.mark.parametrize("pair", WRONG, ids=str)
 def test_a_start_of_the_wrong_shape_is_refused_with_the_right_one(pair):
     name, shape = pair
@@ -177,7 +174,6 @@ OPTIONS_OF_A_RUN = [
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("words")
 @pytest.mark.parametrize(("changes", "words"), OPTIONS_OF_A_RUN, ids=str)
 def test_an_option_out_of_range_is_told_with_the_range(changes, words):
     refused(lambda: simulate(**changes), words)
@@ -272,7 +268,6 @@ VALUE_ERRORS = [
 OTHERS = [(*row, TypeError) for row in TYPE_ERRORS] + [(*row, ValueError) for row in VALUE_ERRORS]
 
 
-@pytest.mark.every_value("call")
 @pytest.mark.parametrize(("words", "call", "error"), OTHERS, ids=[words for words, *_ in OTHERS])
 def test_what_else_is_given_wrongly_is_told_by_name(words, call, error):
     refused(call, words, error)

@@ -123,7 +123,6 @@ SAME = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("way")
 @pytest.mark.parametrize("way", SAME)
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_a_case_may_be_written_in_several_ways(way, end, tmp_path):
@@ -223,7 +222,6 @@ CONTROLS = ["\n", "\0\x1f\x7f\x80", "\u2028"]
 TEXTS = ["θ sweep", "摆", "\U0001f600", "\U0001d11e", 'a "b" \\ c\n</script>\x7f', "#[=]", ""]
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", [*CONTROLS, *TEXTS])
 def test_any_other_name_comes_back_from_a_file(name, tmp_path):
     sol = pc.Case(**SHORT, name=name).simulate()

@@ -183,7 +183,6 @@ def test_a_csv_file_has_every_digit_of_the_states_and_parameters_replace_numbers
     assert sol.scene.links[1].inertia == pytest.approx(0.5 / 12)
 
 
-@pytest.mark.every_value("given")
 @pytest.mark.parametrize(
     ("of_the_case", "given", "kept"),
     [

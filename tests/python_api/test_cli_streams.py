@@ -53,6 +53,7 @@ def test_it_draws_whatever_backend_is_set(line):
     assert DRAWN[line] in os.listdir("o")
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
 @pytest.mark.parametrize("command", ["run", "cost", "derive", "explain"])
 def test_what_a_stream_cannot_hold_is_printed_escaped(command, encoding, monkeypatch):

@@ -23,7 +23,6 @@ def until(found):
     return found["valid_until"], found["horizon"]
 
 
-@pytest.mark.every_value("run")
 @pytest.mark.parametrize(
     ("run", "t", "sentence"),
     [

@@ -80,7 +80,6 @@ WORDS = {
 }
 
 
-@pytest.mark.every_value("line")
 @pytest.mark.parametrize("line", WORDS)
 def test_the_remedy_is_told_and_nothing_is_written(line, pendcore):
     for name, text in FILES.items():
@@ -106,7 +105,6 @@ PRINTED = {
 }
 
 
-@pytest.mark.every_value("line")
 @pytest.mark.parametrize("line", PRINTED)
 def test_what_is_asked_for_is_printed(line, pendcore):
     if line.startswith("completion"):

@@ -54,7 +54,6 @@ MODES = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", MODES)
 def test_natural_frequencies_rates_and_stability_are_the_exact_ones(case):
     scene, name, stability, frequencies, rates = MODES[case]
@@ -90,7 +89,6 @@ BALANCED = {
 }
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", BALANCED)
 def test_an_equilibrium_is_found_where_a_torque_and_the_weight_balance(case):
     scene, t, torque = BALANCED[case]
@@ -160,7 +158,6 @@ REMARKS = {
 }
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", REMARKS)
 def test_what_is_left_out_and_for_when_and_where_it_holds_is_told(case):
     scene, t, words = REMARKS[case]
@@ -187,7 +184,6 @@ LOCKS = {
 }
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", LOCKS)
 def test_equilibria_have_their_locked_joints_where_they_are_locked(case):
     locks, start, joints = LOCKS[case]

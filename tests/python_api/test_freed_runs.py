@@ -144,7 +144,6 @@ def traces(call):
     raise AssertionError("nothing broke it off")
 
 
-@pytest.mark.every_value("way")
 @pytest.mark.parametrize("way", WAYS)
 def test_what_was_broken_off_is_freed_with_its_exception(way):
     with alarm_is_ctrl_c(), without_collector():
@@ -200,7 +199,6 @@ MADE = {
 }
 
 
-@pytest.mark.every_value("made")
 @pytest.mark.parametrize("made", MADE)
 def test_what_knows_its_own_functions_is_collected(made):
     gc.collect()
@@ -224,6 +222,7 @@ QUICK = [
 ]
 
 
+@pytest.mark.few_cases
 @pytest.mark.unsanitized
 @pytest.mark.parametrize("count", [1000, pytest.param(100_000, marks=pytest.mark.whole)])
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")

@@ -65,6 +65,7 @@ def test_what_is_whole_is_read_and_used():
 TIMES = {"case": 200, "archive": 100, "state": 400, "scene": 200, "store": 40}
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("reader", READERS)
 def test_what_is_damaged_is_refused_in_words_or_used(reader):
     """And in time: an input that takes more processor time than `MOST_SECONDS` is a finding."""

@@ -94,7 +94,6 @@ MISTAKES = [
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("words", "wrong")
 @pytest.mark.parametrize(("right", "wrong", "words"), MISTAKES, ids=lambda x: x[:40])
 def test_a_mistake_is_told_with_file_line_and_remedy(right, wrong, words, tmp_path):
     text = TEXTBOOK + DAMPED + MOTOR
@@ -178,7 +177,6 @@ SLOW = {
 }
 
 
-@pytest.mark.every_value("name")
 @pytest.mark.parametrize("name", SLOW)
 def test_a_text_that_is_no_case_is_refused_in_a_moment(name):
     """The slowest took hours; a moment is 50 times what they take on an idle machine."""

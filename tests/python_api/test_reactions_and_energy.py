@@ -45,6 +45,7 @@ def forces_at(solution, t):
     return np.linalg.norm(np.cumsum(loads[:, ::-1], axis=1)[:, ::-1], axis=-1)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["auto", "dopri5", "dop853"])
 @pytest.mark.parametrize(
     ("scene", "q0", "t_span"),
@@ -86,7 +87,6 @@ EXACT = {
 }
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", EXACT)
 def test_it_is_the_exact_one_where_that_is_known(case):
     scene, run, forces, words = EXACT[case]
@@ -219,7 +219,6 @@ RUNS = {
 }
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", RUNS)
 def test_a_drift_of_the_energy_that_is_too_large_is_called_out_and_no_other(case):
     too_large, how = RUNS[case]

@@ -47,7 +47,6 @@ REFUSED = [
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("row")
 @pytest.mark.parametrize("row", REFUSED, ids=lambda row: row[1][:40])
 def test_what_cannot_follow_is_refused_by_the_users_own_index(row):
     call, words = row
@@ -129,7 +128,6 @@ DAMAGE = [
 ]  # fmt: skip
 
 
-@pytest.mark.every_value("damage")
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_solution_is_refused(damage):
     run = _core.Run.__new__(_core.Run)

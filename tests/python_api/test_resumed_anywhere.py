@@ -139,7 +139,6 @@ LEGS = [
 ]
 
 
-@pytest.mark.every_value("how")
 @pytest.mark.parametrize(("scene", "how", "t_end"), LEGS)
 def test_one_attempt_a_leg_is_the_same_run(scene, how, t_end):
     start, once = ([0.4, 1.0], [3.0, -2.0]), {"max_steps": 1, "on_failure": "ignore"}
@@ -236,6 +235,7 @@ class Raises:
         return -0.02 * qd
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("ledger", [False, True])
 def test_whichever_call_of_a_users_function_raises_the_run_goes_on_the_same(ledger, method):
     """Also at a switch, where the law that follows is being looked for."""
@@ -317,7 +317,6 @@ def test_other_processes_with_other_instructions_go_on_the_same(tmp_path):
             assert differences(whole, pc.load(path)) == [], (path, instructions)
 
 
-@pytest.mark.every_value("method")
 @pytest.mark.parametrize("method", ["auto", "dopri5", "radau5"])
 def test_a_run_at_times_goes_on_where_it_was_cut_between_them(method):
     times = np.linspace(0, 1, 26)

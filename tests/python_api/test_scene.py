@@ -54,7 +54,6 @@ REPLACED = [
 ]
 
 
-@pytest.mark.every_value("row")
 @pytest.mark.parametrize("row", REPLACED)
 def test_what_is_replaced_is_as_if_made_so_and_the_rest_stays(row):
     one, other = row

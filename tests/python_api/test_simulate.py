@@ -75,7 +75,6 @@ SAME = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("case")
 @pytest.mark.parametrize("case", SAME)
 def test_options_may_be_said_in_several_ways(case):
     one, other = (textbook(**options) for options in SAME[case])
@@ -147,6 +146,7 @@ def goes_on(run, compensated):
     assert again.stats == whole.stats
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("bar", [False, True])
 @pytest.mark.parametrize("compensated", [False, True])
 def test_what_breaks_a_run_off_passes_through_with_the_run_so_far(bar, compensated, capsys):

@@ -173,7 +173,6 @@ UNFINISHED = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("status")
 @pytest.mark.parametrize("status", UNFINISHED)
 def test_a_run_that_does_not_get_to_its_end_warns_raises_or_says_nothing(status):
     run = UNFINISHED[status]

@@ -63,6 +63,7 @@ STOPPED = [
 ]
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("row")
 @pytest.mark.parametrize("row", STOPPED, ids=lambda row: f"{row[0]}: {row[3][0]}")
 @pytest.mark.parametrize("why", STOPS)
@@ -220,6 +221,7 @@ WRITERS = {
 }
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("name", WRITERS)
 def test_whatever_is_written_has_a_name_of_its_own_until_it_is_whole(name, monkeypatch, pendcore):
     under = []

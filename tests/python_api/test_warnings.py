@@ -52,7 +52,6 @@ def shown():
         yield told
 
 
-@pytest.mark.every_value("loop")
 @pytest.mark.parametrize("loop", LOOPS)
 def test_a_loop_hears_of_each_kind_once(loop, shown):
     call, kinds = LOOPS[loop]

@@ -32,7 +32,6 @@ def stopped_below(e):
     return rod(fx.JointStop(joint=1, range=(-inf, np.pi / 2), restitution=e), gravity=9.81)
 
 
-@pytest.mark.every_value("bounces")
 @pytest.mark.parametrize(
     "bounces",
     [

@@ -84,6 +84,7 @@ def bounce_by_bounce(name):
     return exact, times, exact.run(np.array(run.start), times)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("capture", [1e-3, 1e-5, 1e-7])
 @pytest.mark.parametrize("name", RUNS)
 def test_bounces_of_chains_are_all_there_down_to_the_capture_speed(name, capture, fine):

@@ -35,6 +35,7 @@ RUNS = {
 }
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("run")
 @pytest.mark.parametrize("run", RUNS)
 def test_sticking_sliding_and_lasting_contact_follow_the_solution_mode_by_mode(run, fine):
@@ -114,6 +115,7 @@ def assert_its_ledger_closes(sol, rtol):
 LATER = [pytest.param(range(k, k + 60), marks=pytest.mark.unsanitized) for k in (60, 120, 180)]
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("seeds", [range(60), *LATER], ids=str)
 def test_chains_of_many_contacts_get_to_their_end_within_their_stops(seeds, method):
     how = {"method": method, "rtol": 1e-9, "atol": 1e-11, "max_steps": 50_000, "ledger": True}
@@ -131,6 +133,7 @@ def test_chains_of_many_contacts_get_to_their_end_within_their_stops(seeds, meth
         assert_its_ledger_closes(runs[-1], how["rtol"])
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("step", [None, 0.003, 1 / 64])
 @pytest.mark.parametrize("block", range(4))
 def test_laws_that_meet_lead_on(method, step, block):
@@ -154,6 +157,7 @@ def test_laws_that_meet_lead_on(method, step, block):
         assert sol.success or (may_fail and sol.status == "not_converged"), (seed, sol.message)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("seed", [392, 1656, 6741])
 def test_chains_of_many_contacts_that_went_back_and_forth_get_to_their_end(seed, method):
     scene, q0, qd0 = drawn(seed)
@@ -182,6 +186,7 @@ def resting(seed):
 
 
 # 4, 815 and 2576: an impact at 1e-29 rad/s set joints in motion that friction held.
+@pytest.mark.few_cases
 @pytest.mark.parametrize("seeds", [range(100), range(100, 200), [392, 815, 1656, 2576]], ids=str)
 def test_chains_that_rest_at_their_stops_get_going(seeds, method):
     for seed in seeds:

@@ -135,7 +135,6 @@ DRAWN = {  # the way from numbers within 0.1 to 10, how many there are, rtol of 
 }  # fmt: skip
 
 
-@pytest.mark.every_value("ways")
 @pytest.mark.parametrize("ways", DRAWN)
 def test_a_reversal_at_a_knot_or_an_end_to_the_last_bits_is_passed_or_met(ways):
     way, count, tolerances, within = DRAWN[ways]
@@ -169,6 +168,7 @@ def late(method, scene, w0, span):
     return sol, sol.stats.accepted * rounding.U * float(np.abs(sol.y).max()) + stages
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 @pytest.mark.parametrize("bits", [1, 2, 4, 16, 10**6])
 @pytest.mark.parametrize("start", [0.0, 7.0, -1e3, 1e6])

@@ -38,6 +38,7 @@ def kinetic(m, qd):
     return float(qd @ m @ qd / 2)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
 def test_an_impact_turns_the_joint_and_jerks_the_others_as_the_law_says(n, e, fine):
@@ -117,6 +118,7 @@ def test_a_run_that_keeps_the_time_of_an_impact_has_the_state_after_it(fine):
     np.testing.assert_array_equal(kept.qd, whole.qd[impacts + 1])
 
 
+@pytest.mark.few_cases
 @pytest.mark.every_value("struck")
 @pytest.mark.parametrize("struck", [(n, capturing) for n in (1, 2, 3, 4) for capturing in (0, 1)])
 def test_stops_hit_at_once_share_the_impulse_by_complementarity(struck, method):
@@ -198,6 +200,7 @@ def test_impacts_at_the_very_start_are_one_problem_and_need_no_remark():
 # In corners -------------------------------------------------------------------------------------
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("start", [0.0, 1000.0])
 @pytest.mark.parametrize("scene", CASES)
 def test_a_run_through_a_corner_ends_where_its_impacts_lead(scene, start, method):

@@ -47,6 +47,7 @@ HUMS = {
 }
 
 
+@pytest.mark.few_cases
 @pytest.mark.unsanitized
 @pytest.mark.parametrize("hum", HUMS)
 def test_a_rod_held_at_30_degrees_under_a_hum_moves_by_nothing_in_1e6_s(hum, method):
@@ -201,7 +202,6 @@ RELEASES = {
 }  # fmt: skip
 
 
-@pytest.mark.every_value("scene")
 @pytest.mark.parametrize("scene", RELEASES)
 def test_a_rod_is_let_go_where_the_torque_exceeds_what_holds_it(scene):
     """A point of the run to the last bits, not the least motion before it, and its motion after."""

@@ -35,6 +35,7 @@ def solved(name, frequency):
     return rod(*motors, fx.DryJointFriction(joint=1, coulomb=hum["friction"])), turns, found
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("frequency", [2.0, 0.01])
 @pytest.mark.parametrize("hum", HUMS)
 def test_under_a_sinusoidal_torque_each_slide_begins_and_ends_when_it_should(hum, frequency, fine):
@@ -114,6 +115,7 @@ def phases():
     return found
 
 
+@pytest.mark.few_cases
 def test_stick_and_slip_of_a_rod_that_a_spring_tows_slowly(fine):
     """The classic: static friction above the sliding one, a spring whose far end goes at v."""
     friction = {"coulomb": COULOMB, "static": STATIC, "stribeck_velocity": STRIBECK, "exponent": 2}

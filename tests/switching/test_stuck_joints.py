@@ -60,6 +60,7 @@ def drawn(n, seed, *, at_rest):
     return Rubbed(chain=chain, q=q, phid=phid, motors=motors, static=static, coulomb=coulomb)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("at_rest", [True, False], ids=["at rest", "some slide"])
 @pytest.mark.parametrize(("n", "cases"), [(2, 2000), (3, 1000)])
 def test_what_sticks_is_what_is_free_of_contradiction(n, cases, at_rest):
@@ -101,6 +102,7 @@ def test_any_number_of_joints_hold_as_much_as_they_can_and_no_more(n):
     assert max(map(sum, patterns)) > n / 3
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("n", [2, 3, 4])
 def test_a_run_from_rest_begins_as_the_law_says(n, method):
     """A microsecond on: joints that stick have not moved, the others as their accelerations say."""

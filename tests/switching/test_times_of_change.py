@@ -49,6 +49,7 @@ def clipped(amplitude, frequency, phase=0.0):
     return fx.Motor(joint=1, sinusoid=wave, limit=1.0)
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("span", [(0.0, 10.0), (10.0, 0.0)], ids=["forward", "backward"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-9])
 def test_no_step_however_long_jumps_over_where_a_sinusoid_is_clipped(rtol, span):
@@ -116,6 +117,7 @@ def test_a_table_of_many_points_takes_one_step_each():
 SPLINE = {"x": [0.0, 0.1, -0.2, 0.1, 0.1], "y": [0.1, 0.0, 0.2, -0.1, 0.3]}
 
 
+@pytest.mark.few_cases
 @pytest.mark.parametrize("n", [1, 2, 3, 5])
 @pytest.mark.parametrize("start", [0.0, 5.0, -9.0], ids=["from 0", "after 0", "before 0"])
 def test_views_of_rods_in_the_wind_on_a_moving_pivot_are_those_of_the_reference(start, n):
