@@ -21,7 +21,12 @@ VALUES = 4
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("sweeps")
     group.addoption("--full", action="store_true", help="run all cases of every test")
-    group.addoption("--values", type=int, default=VALUES, help="of each parameter, without --full")
+    group.addoption(
+        "--values",
+        type=int,
+        default=VALUES,
+        help="of each parameter, in tests marked few_cases or with --share",
+    )
     group.addoption("--share", type=int, default=1, help="run one test function of so many")
 
 

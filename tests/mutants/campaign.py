@@ -60,7 +60,7 @@ def main(arguments: list[str] | None = None) -> int:
     source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
     if any(source.items() - one.items() for one in told):
         parser.error(f"{record} is of another commit or seed: give another --record")
-    wide = int(SPARE * asked.count)
+    wide = max(int(SPARE * asked.count), (asked.only or 0) + 1)
     mutants = list(islice(drawn(asked.part, asked.seed, source["commit"]), wide))
     alone = asked.part == "core" and asked.only is not None
     switches = asked.part == "core" and not alone
@@ -107,6 +107,8 @@ def main(arguments: list[str] | None = None) -> int:
                 counted += 1
                 bar.update()
     print(report(told))
+    if counted < asked.count and len(told) == len(mutants):
+        print(f"all {len(mutants)} are tried: a larger --count draws more")
     return 0
 
 

@@ -29,7 +29,7 @@ UNKNOWN = 0.3
 
 
 class Chosen:
-    """Lets the quickest of the chosen tests begin; files that run whole come last, in their order.
+    """Runs the quickest of the chosen tests first; whole files come last, in their order.
 
     They are not named to pytest: it would run each with all its parameters, not with the few of
     `make test`.

@@ -91,15 +91,17 @@ class Workshop:
         if not self.switched:
             return ""
         header = PLACE / "switches.hpp"
-        if not header.exists():  # a newer one would have all compiled anew
-            header.write_text(switches.HEADER)
+        if not header.exists() or header.read_text() != switches.HEADER:
+            header.write_text(switches.HEADER)  # all is compiled anew
         return f"-include {header} -w"
 
     def built_with_switches(self) -> bool:
         """Build all mutants at once; those go that do not compile so, and are remembered."""
-        paths = {m.path for m in self.switched.values()}
+        changed = self.output("diff", "--name-only").decode().split()
+        paths = {*changed, *(m.path for m in self.switched.values())}
         right = {path: self.output("show", f"{self.commit}:{path}") for path in paths}
-        known = PLACE / f"not_switched.{self.commit}.json"
+        drawn = sha256(repr(self.switched).encode()).hexdigest()[:8]
+        known = PLACE / f"not_switched.{drawn}.json"
         out = set(json.loads(known.read_text())) if known.exists() else set()
         while True:
             self.switched = {n: m for n, m in self.switched.items() if n not in out}

@@ -56,7 +56,7 @@ void check_times(const std::vector<double>& times, double t0, double t_end) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],
              "beyond t_eval[" + std::to_string(i - 1) + "] = " + text(times[i - 1]) +
                  (direction < 0.0 && times.front() < times.back()
-                      ? ", as t_span runs backward: reverse t_eval, or swap t_span"
+                      ? ", as t_span runs backward: reverse t_eval, or swap the ends of t_span"
                       : " in the direction of the run: sort the times, each once"));
     }
   }

@@ -162,7 +162,7 @@ std::string ending_message(const Ending& ending, const Scene& scene, const Solut
   const bool is_cut = ending.status == Status::max_steps || ending.status == Status::time_limit;
   if (is_cut && jumps_under_users(scene, integrator, solution.t_end)) {
     message +=
-        "; it hardly gets on: a law of yours that jumps, as sign(w) does, is not "
+        "; it makes almost no progress: a law of yours may jump, as sign(w) does, which is not "
         "friction that can hold a joint at rest: use DryJointFriction";
     return message + ')';
   }

@@ -11,7 +11,6 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from itertools import zip_longest
 from pathlib import Path, PureWindowsPath
 from typing import Any
 
@@ -281,8 +280,9 @@ def continued(path: Path, members: Members, request: Request) -> Store:
         if there != value:
             what = f"pendcore {there}, not {value}" if name == VERSION else _OTHER[name]
             if name == CASE:
-                lines = zip_longest(there.splitlines(), value.splitlines(), fillvalue="nothing")
-                what += " ({}, and now {})".format(*next(x for x in lines if x[0] != x[1]))
+                old, new = there.splitlines(), value.splitlines()
+                was = next((line for line in old if line not in new), "nothing")
+                what += f" ({was}, and now {next((x for x in new if x not in old), 'nothing')})"
             raise ValueError(
                 f"store = {str(path)!r}: has results of {what}: results are never mixed; choose "
                 "another name, or remove it"

@@ -102,7 +102,7 @@ def function(name: str, value: object) -> object:
     if not callable(value):
         raise TypeError(f"{name} = {value!r}: must be a function of t, q, qd")
     try:
-        parameters = signature(value)
+        parameters = signature(value, follow_wrapped=False)
     except (TypeError, ValueError):
         return value  # some functions in C do not tell
     try:

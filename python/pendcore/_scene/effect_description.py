@@ -15,8 +15,6 @@ from typing import Any, NamedTuple
 from pendcore import _core
 from pendcore._messages.arguments import in_unit
 
-"""The types of parameters that are numbers; the others are a part, an address or a function."""
-
 
 class Parameter(NamedTuple):
     """One parameter of an effect, or of a part of one.

@@ -80,7 +80,7 @@ def tuple_of(
                 f"{noun} {i} = {value.__name__}: must be a {_AN_OBJECT[noun]}; got the class itself"
             )
         if not isinstance(value, kind):
-            if callable(value) and noun in _OF_FUNCTIONS:
+            if callable(value) and not isinstance(value, type) and noun in _OF_FUNCTIONS:
                 remedy = f"is a function: give {_OF_FUNCTIONS[noun]}"
             raise TypeError(f"{noun} {i} = {value!r}: {remedy}")
     return values
