@@ -32,7 +32,7 @@ demo: $(DONE)/installed  ## build, run the textbook's case, say where its figure
 	@echo "command:  .venv/bin/pendcore --help (or first: . .venv/bin/activate)"
 	@echo "next:     .venv/bin/pendcore derive; .venv/bin/pendcore run examples/03_case_file.toml"
 
-test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: every claim, sweeps reduced to a few cases
+test: $(DONE)/installed $(DONE)/test-requirements  ## build and run the tests: every claim, long sweeps reduced to a few cases
 	$(CPP_TESTS)
 	$(PYTEST)
 

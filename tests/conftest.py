@@ -51,17 +51,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 def _reduce(config: pytest.Config, items: list[pytest.Item]) -> None:
     functions: dict[str, list[Case]] = {}
-    long_sweeps = set()
     numbers: dict[tuple[str, str, int], int] = {}
     for item in items:
-        if item.get_closest_marker("few_cases") is not None:
-            long_sweeps.add(item.nodeid.partition("[")[0])
         if item.get_closest_marker("whole") is None:
             functions.setdefault(item.nodeid.partition("[")[0], []).append(Case(item, numbers))
     values, share = config.getoption("values"), config.getoption("share")
     kept = set()
     for name in every(functions, share):
-        keeps_all = share == 1 and name not in long_sweeps
+        keeps_all = share == 1 and not functions[name][0].takes_long
         cases = functions[name] if keeps_all else few(functions[name], values)
         kept |= {case.nodeid for case in cases}
     config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in kept])
@@ -82,6 +79,7 @@ class Case:
             name: numbers.setdefault((function, name, id(value)), len(numbers))
             for name, value in (callspec.params if callspec else {}).items()
         }
+        self.takes_long = item.get_closest_marker("few_cases") is not None
         marks = item.iter_markers("every_value")
         self.kept_whole = frozenset(name for mark in marks for name in mark.args)
 

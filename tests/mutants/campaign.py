@@ -65,7 +65,8 @@ def main(arguments: list[str] | None = None) -> int:
     alone = asked.part == "core" and asked.only is not None
     switches = asked.part == "core" and not alone
     workshop = Workshop(source["commit"], dict(enumerate(mutants, 1)) if switches else {})
-    if not alone and (plain := workshop.measured(asked.part == "package")).what != "alive":
+    without_mistake = workshop.unswitched if switches else workshop.measured
+    if not alone and (plain := without_mistake()).what != "alive":
         print(f"the tests fail without a mistake: {plain.by}")
         return 1
     places: SimpleQueue[Place] = SimpleQueue()
@@ -77,7 +78,7 @@ def main(arguments: list[str] | None = None) -> int:
             return workshop.tested(mutant)
         place = places.get()
         try:
-            return place.switched(number, mutant) if switches else place.tested(mutant)
+            return place.tested_in_build(number, mutant) if switches else place.tested(mutant)
         finally:
             places.put(place)
 

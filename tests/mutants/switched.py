@@ -27,7 +27,7 @@ constexpr bool is(int number) {{ return !__builtin_is_constant_evaluated() && ch
 """Included by every source. Mutants are counted from 1."""
 
 
-def switched(path: str, source: bytes, mutants: Mapping[int, Mutant]) -> bytes:
+def with_switches(path: str, source: bytes, mutants: Mapping[int, Mutant]) -> bytes:
     """Return a source with the mutants of it, on the same lines as before."""
     tree = PARSERS[Path(path).suffix].parse(source)
     places: dict[int, tuple[int, int]] = {}

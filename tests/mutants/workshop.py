@@ -58,12 +58,13 @@ class Outcome:
 class Workshop:
     """A clone of a commit, its core built, its package without a mistake.
 
-    Of the mutants of the core that are given, by number, `switched` are in the build.
+    The given mutants of the core, by number, are compiled into it; `in_build` has those that could
+    be.
     """
 
     def __init__(self, commit: str, mutants: Mapping[int, Mutant] = MappingProxyType({})) -> None:
         self.commit = commit
-        self.switched = dict(mutants)
+        self.in_build = dict(mutants)
         self.environment = os.environ | {
             "PYTHONPATH": str(SITE), "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1",
         }  # fmt: skip
@@ -88,7 +89,7 @@ class Workshop:
 
     def flags(self) -> str:
         """Return what the compiler is told, so that mutants can be switched."""
-        if not self.switched:
+        if not self.in_build:
             return ""
         header = PLACE / "switches.hpp"
         if not header.exists() or header.read_text() != switches.HEADER:
@@ -98,34 +99,36 @@ class Workshop:
     def built_with_switches(self) -> bool:
         """Build all mutants at once; those go that do not compile so, and are remembered."""
         changed = self.output("diff", "--name-only").decode().split()
-        paths = {*changed, *(m.path for m in self.switched.values())}
+        paths = {*changed, *(m.path for m in self.in_build.values())}
         right = {path: self.output("show", f"{self.commit}:{path}") for path in paths}
-        drawn = sha256(repr(self.switched).encode()).hexdigest()[:8]
+        drawn = sha256(repr(self.in_build).encode()).hexdigest()[:8]
         known = PLACE / f"not_switched.{drawn}.json"
         out = set(json.loads(known.read_text())) if known.exists() else set()
         while True:
-            self.switched = {n: m for n, m in self.switched.items() if n not in out}
+            self.in_build = {n: m for n, m in self.in_build.items() if n not in out}
             for path, source in right.items():
-                there = {n: m for n, m in self.switched.items() if m.path == path}
-                wrong = switches.switched(path, source, there)
+                there = {n: m for n, m in self.in_build.items() if m.path == path}
+                wrong = switches.with_switches(path, source, there)
                 if (SOURCE / path).read_bytes() != wrong:
                     (SOURCE / path).write_bytes(wrong)
             command = ["cmake", "--build", BUILD, "--target", "all", "tests/cpp/all"]
             code, said = self.call([*command, "--", "-k", "0"])
             if not code:
                 return True
-            bad = switches.not_compiled(said, SOURCE, self.switched)
+            bad = switches.not_compiled(said, SOURCE, self.in_build)
             if not bad:
                 return False
             out |= bad
             known.write_text(json.dumps(sorted(out)))
 
-    def measured(self, package: bool) -> Outcome:
+    def unswitched(self) -> Outcome:
+        """Run the tests of the core with no mutant switched on."""
+        outcome = self.asked_of_ctest()
+        tests = related_first(SOURCE, "")
+        return outcome if outcome.by else self.asked_of_tests(tests, KINDS[:1])
+
+    def measured(self) -> Outcome:
         """Run all tests without a mistake; learn which of them run a line of the package."""
-        if not package:
-            outcome = self.asked_of_ctest()
-            tests = related_first(SOURCE, "")
-            return outcome if outcome.by else self.asked_of_tests(tests, KINDS[:1])
         known = TESTS_OF_LINES.with_suffix(f".{self.commit}.json")
         if not known.exists():
             data = PLACE / "coverage/data"
@@ -256,10 +259,10 @@ class Place:
             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         )  # fmt: skip
 
-    def switched(self, number: int, mutant: Mutant) -> Outcome:
+    def tested_in_build(self, number: int, mutant: Mutant) -> Outcome:
         """Return what becomes of a mutant of the core that is in the build."""
         right = self.workshop.output("show", f"{self.workshop.commit}:{mutant.path}")
-        if number not in self.workshop.switched or switches.is_constant(right, mutant):
+        if number not in self.workshop.in_build or switches.is_constant(right, mutant):
             return Outcome("not switched")
         if (outcome := self.workshop.asked_of_ctest(number)).what == "killed":
             return outcome
