@@ -12,8 +12,8 @@ from handed_out_cases import CASES, drawn
 from matplotlib.figure import Figure
 from matplotlib.path import Path as MarkedPath
 from matplotlib.text import Text
-from pendcore.derive.report import drawing
 from pendcore.derive.report.motion import empty_axes, whole_ticks
+from pendcore.plotting import sketch
 
 pytestmark = pytest.mark.unsanitized
 
@@ -26,7 +26,7 @@ def test_arrows_point_the_way_that_counts_as_positive(
 ) -> None:
     """On link 1 F_01 and F_21 point along +x and +y; on link 2 F_21 is the other way round."""
     sheets: list[list[tuple[str, list[float]]]] = []
-    sketch, arrow = drawing.Sketch, drawing.arrow
+    sketch, arrow = sketch.Sketch, sketch.arrow
 
     def begun(*given: Any) -> Any:
         sheets.append([])
@@ -64,8 +64,8 @@ def test_free_bodies_have_names_and_the_couple_that_turns_a_payload() -> None:
 
 @pytest.mark.parametrize("angle", [0.3, 2.0, -1.2, -2.9])
 def test_a_couple_is_drawn_on_the_side_that_is_asked_for(angle: float) -> None:
-    on = drawing.Sketch(Figure().subplots(), 1.0)
-    drawing.couple(on, np.zeros(2), drawing.direction(angle), "$M$")
+    on = sketch.Sketch(Figure().subplots(), 1.0)
+    sketch.couple(on, np.zeros(2), sketch.direction(angle), "$M$")
     ((points, _),) = on.drawn
     assert np.arctan2(*points.mean(axis=0)[::-1]) == pytest.approx(angle, abs=0.1)
 
@@ -133,7 +133,7 @@ def test_names_of_mass_centres_lie_beside_them(name: str) -> None:
 
 def test_empty_axes_name_each_angle_and_span_the_run() -> None:
     figure = empty_axes(pc.simulate(pc.Scene.textbook(), (0.5, 2.0), [0.1, 0.2])).figure
-    assert [axes.get_ylabel() for axes in figure.axes] == ["q1 (deg)", "q2 (deg)"]
+    assert [axes.get_ylabel() for axes in figure.axes] == ["$q_{1}$ (deg)", "$q_{2}$ (deg)"]
     assert [axes.get_xlim() for axes in figure.axes] == [(0.5, 2.0)] * 2
     assert not any(axes.lines for axes in figure.axes)
 

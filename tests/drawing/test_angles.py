@@ -7,6 +7,7 @@ import numpy as np
 import pendcore as pc
 import pytest
 from matplotlib.colors import to_rgb
+from pendcore.plotting import LIGHT
 
 SCENE = pc.Scene.textbook()
 
@@ -37,9 +38,9 @@ def legend(axes):
 def test_labels_units_colors_and_curves_are_the_books(sol):
     lines = sol.plot()
     axes = [line.axes for line in lines]
-    assert [ax.get_ylabel() for ax in axes] == ["q1 (deg)", "q2 (deg)"]
-    assert [ax.get_xlabel() for ax in axes] == ["t (s)", "t (s)"]
-    assert [to_rgb(line.get_color()) for line in lines] == [(1, 0, 0), (0, 0, 1)]
+    assert [ax.get_ylabel() for ax in axes] == ["$q_{1}$ (deg)", "$q_{2}$ (deg)"]
+    assert [ax.get_xlabel() for ax in axes] == ["", "t (s)"]  # the time axis is shared
+    assert [line.get_color() for line in lines] == [LIGHT.red, LIGHT.blue]
     assert axes[0] is not axes[1]
     assert axes[0].figure is axes[1].figure
     for i, line in enumerate(lines):
@@ -82,7 +83,7 @@ def test_it_draws_into_the_axes_it_is_given(sol):
     assert len(plt.get_fignums()) == 1
     rod = pc.Scene(links=[pc.Link(mass=1, length=1)])
     (line,) = pc.simulate(rod, q0=1.0, t_span=(0, 1)).plot()
-    assert line.axes.get_ylabel() == "q1 (deg)"
+    assert line.axes.get_ylabel() == "$q_{1}$ (deg)"
     assert len(line.figure.axes) == 1
 
 
@@ -108,13 +109,13 @@ def test_solutions_on_the_same_axes_can_be_told_apart(sol):
 def test_one_axes_takes_all_curves_of_all_solutions_and_names_them(sol):
     _, ax = plt.subplots()
     sol.plot(ax=ax)
-    assert ax.get_ylabel() == "q (deg)"
-    assert legend(ax) == ["q1", "q2"]
+    assert ax.get_ylabel() == "$q$ (deg)"
+    assert legend(ax) == ["$q_{1}$", "$q_{2}$"]
     _, ax = plt.subplots()
     lines = [line for label in "abc" for line in sol.plot(ax=ax, label=label)]
     assert {line.axes for line in lines} == {ax}
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 6
-    assert legend(ax) == ["q1, a", "q2, a", "q1, b", "q2, b", "q1, c", "q2, c"]
+    assert legend(ax) == [f"$q_{{{i}}}$, {run}" for run in "abc" for i in (1, 2)]
 
 
 @pytest.mark.parametrize("names", [("color", "linestyle", "linewidth"), ("c", "ls", "lw")])

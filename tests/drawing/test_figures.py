@@ -25,26 +25,26 @@ def test_rates_are_those_of_the_run_in_rad_per_second(sol):
     for i, line in enumerate(lines):
         t, curve = line.get_data()
         assert np.array_equal(curve, sol(t)[2 + i])
-        assert line.axes.get_ylabel() == f"qd{i + 1} (rad/s)"
-        assert line.axes.get_xlabel() == "t (s)"
+        assert line.axes.get_ylabel() == rf"$\dot q_{{{i + 1}}}$ (rad/s)"
+    assert line.axes.get_xlabel() == "t (s)"
 
 
 def test_reactions_have_components_and_sizes_in_newtons(sol):
     lines = sol.plot("reactions", axes(2))
-    assert [line.get_label() for line in lines] == [
-        "F_01 x", "F_01 y", "|F_01|", "F_12 x", "F_12 y", "|F_12|",
-    ]  # fmt: skip
+    names = [text.get_text() for text in lines[0].axes.get_legend().get_texts()]
+    assert names == ["x", "y, downwards", "size"]
     x, y, size = (line.get_ydata() for line in lines[:3])
     assert (x[0], y[0]) == pytest.approx(tuple(sol.reactions()[0, 0]))
     assert size == pytest.approx(np.hypot(x, y))
-    assert lines[0].axes.get_ylabel() == "F_01 (N)"
+    assert [line.axes.get_ylabel() for line in lines[::3]] == ["$F_{01}$ (N)", "$F_{12}$ (N)"]
 
 
 def test_the_energy_has_its_ledger_below(sol):
     damped = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
     run = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True)
-    lines = run.plot("energy", axes(2))
-    found = {line.get_label(): line.get_data() for line in lines}
+    lines = run.plot("energy", axes(3))
+    assert lines[-1].axes.get_ylabel() == "residual (J)"
+    found = {line.get_label().lstrip("_"): line.get_data() for line in lines}
     assert set(found) == {"kinetic", "potential", "total", "viscous (lost)", "residual"}
     t, total = found["total"]
     lost = np.interp(t, *found["viscous (lost)"])
@@ -70,7 +70,7 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol):
     assert len(lines) == 2
     assert lines[1].get_xdata()[0] == sol.q[0, 1]
     assert lines[1].get_ydata()[-1] == sol.qd[-1, 1]
-    assert lines[0].axes.get_xlabel() == "q (rad)"
+    assert lines[0].axes.get_xlabel() == "$q$ (rad)"
 
 
 def test_a_section_shows_the_states_at_an_event(sol):
@@ -88,9 +88,11 @@ def test_a_section_without_events_says_how_to_look_for_them():
 
 def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
     artists = sol.plot("strip", axes(), t=[0.0, 1.5, 4.0])
-    lines, texts = artists[::2], artists[1::2]
+    texts = artists[2::3]
     assert [text.get_text() for text in texts] == ["0 s", "1.5 s", "4 s"]
-    pose = np.array(lines[1].get_data()).T
+    first, second = (np.array(line.get_data()).T for line in artists[3:5])
+    assert np.array_equal(first[1], second[0])
+    pose = np.array([*first, second[1]])
     true = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.5]).positions()[0]
     assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
 
@@ -113,10 +115,10 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
     ]
     momentum[1] = momentum[1] + 0.4 * np.tensordot(change, tip, 1) / h**2
     forces = forces_on_links(scene, at, q[1], qd[1])
-    assert [kind for kind, _, _ in forces[1]] == ["joint", "weight", "weight", "other"]
+    assert [one.kind for one in forces[1]] == ["joint", "weight", "weight", "other"]
     for own, of_link in zip(momentum, forces, strict=True):
-        assert sum(force for _, _, force in of_link) == pytest.approx(own, rel=1e-4, abs=1e-4)
-    (drag,) = (force for kind, _, force in forces[1] if kind == "other")
+        assert sum(one.force for one in of_link) == pytest.approx(own, rel=1e-4, abs=1e-4)
+    (drag,) = (one.force for one in forces[1] if one.kind == "other")
     speed = np.gradient(centers[:, 1], h, axis=0)[1]
     assert drag @ speed < 0  # drag brakes
 
@@ -126,20 +128,21 @@ def test_a_fast_pivot_is_no_force_on_a_link():
     scene = BOOK.replace(effects=[shaken, DRAG])
     state = 1e-3, np.array([0.3, 0.9]), np.array([2.0, -5.0])
     first, second = forces_on_links(scene, *state)
-    assert [kind for kind, _, _ in first] == ["joint", "joint", "weight"]
-    assert [kind for kind, _, _ in second] == ["joint", "weight", "other"]
-    slow_drag = forces_on_links(scene.replace(effects=[DRAG]), *state)[1][-1][2]
+    assert [one.kind for one in first] == ["joint", "joint", "weight"]
+    assert [one.kind for one in second] == ["joint", "weight", "other"]
+    slow_drag = forces_on_links(scene.replace(effects=[DRAG]), *state)[1][-1].force
     # The pivot's speed is part of the wind that the rod feels, so that the drags are of one size.
-    assert 0.1 < np.hypot(*second[-1][2]) / np.hypot(*slow_drag) < 1e3
+    assert 0.1 < np.hypot(*second[-1].force) / np.hypot(*slow_drag) < 1e3
 
 
-def test_free_bodies_show_each_force_by_its_size(sol):
-    artists = sol.plot("free_bodies", axes(), t=1.0, color="b")
+def test_free_bodies_name_each_force_and_say_its_size(sol):
+    artists = sol.plot("free_bodies", axes(), t=1.0)
     axis = artists[0].axes
-    sizes = [text.get_text() for text in axis.texts if text.get_text().endswith("N")]
-    assert sizes.count(sizes[1]) == 2  # action and reaction
-    assert {text.get_text().strip() for text in axis.texts} >= {"link 1", "link 2"}
-    assert axis.get_title() == "t = 1 s"
+    named = dict(text.get_text().split(" = ") for text in axis.texts if "=" in text.get_text())
+    assert set(named) == {"$F_{01}$", "$F_{21}$", "$F_{12}$", "$m_{1} g$", "$m_{2} g$"}
+    assert named["$F_{21}$"] == named["$F_{12}$"]  # action and reaction
+    assert {text.get_text() for text in axis.texts} >= {"1", "2"}
+    assert axis.get_title("left") == "t = 1 s"
 
 
 def test_what_is_past_the_horizon_is_shaded_or_pale():
@@ -153,6 +156,8 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
             (shade,) = axis.patches
             assert shade.get_x() == pytest.approx(until)
             assert shade.get_x() + shade.get_width() == pytest.approx(30)
+        said = [text.get_text() for text in ax[0].get_legend().get_texts()]
+        assert said[-1] == f"right to 0.1 rad until {until:.4g} s"
     for what in ("path", "phase"):
         line = chaotic.plot(what, axes(), horizon=0.1)[0]
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())
@@ -172,6 +177,7 @@ REFUSED = [
     ({"what": "section", "link": 3}, "link = 3: must be 1 to 2"),
     ({"what": "section", "link": 0}, "link = 0: must be 1 to 2"),
     ({"what": "strip", "label": "mine"}, "label: belongs to what = 'angles' and"),
+    ({"what": "free_bodies", "lw": 2.0}, "linewidth: what = 'free_bodies' has no lines"),
     ({"what": "free_bodies", "t": [1.0, 2.0]}, "t: 2 times: must be one"),
     ({"what": "section", "event": 1}, "event = 1: must be 0 to 0"),
     ({"what": "free_bodies", "t": 9.0}, "t = 9"),
@@ -186,10 +192,10 @@ def test_what_a_figure_cannot_show_is_refused(sol):
 
 def test_poses_are_at_the_kept_times_unless_others_are_asked_for():
     later = pc.simulate(BOOK, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.0, 4.5])
-    texts = [text.get_text() for text in later.plot("strip", axes())[1::2]]
+    texts = [text.get_text() for text in later.plot("strip", axes())[2::3]]
     assert texts == ["1 s", "1.5 s", "2 s", "2.5 s", "3 s", "3.5 s", "4 s", "4.5 s"]
-    assert later.plot("free_bodies", axes())[0].axes.get_title() == "t = 1 s"
-    assert len(later.plot("strip", axes(), t=[0.3])) == 2
+    assert later.plot("free_bodies", axes())[0].axes.get_title("left") == "t = 1 s"
+    assert len(later.plot("strip", axes(), t=[0.3])) == 3
 
 
 @pytest.mark.few_cases

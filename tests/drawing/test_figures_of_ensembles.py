@@ -43,13 +43,26 @@ def test_a_curve_names_the_marks_of_what_is_not_resolved(swept):
     assert [text.get_text() for text in legend.get_texts()] == ["not resolved"]
 
 
-def test_a_map_shows_what_is_resolved_in_its_second_axes(plane):
-    two, mask = axes(2), np.ones((3, 2), dtype=bool)
-    assert [one.axes for one in plane.plot("q[1]", two, resolved=mask)] == two
+def test_a_map_marks_what_is_not_resolved_and_says_how_much_it_is(plane):
+    ax, mask = axes(), np.array([[True, True], [True, False], [True, True]])
+    image, marked = plane.plot("q[1]", ax, resolved=mask)
+    assert image.axes is marked.axes is ax[0]
+    assert np.array_equal(np.ma.getmaskarray(marked.get_array()), mask.T)
+    assert [text.get_text() for text in ax[0].get_legend().get_texts()] == ["not resolved: 16.67%"]
 
 
-MASK = {"resolved": np.ones((3, 2), dtype=bool)}
-TWO = "ax: 1 axes: must be 2, for the values and for what is resolved"
+def test_a_map_says_why_a_pixel_has_no_value():
+    starts = np.stack(np.meshgrid([0.4, 1.5], [0.4, 1.0], indexing="ij"), axis=-1)
+    over = pc.reducers.FirstEvent(pc.events.LinkAngle(1, 2.0))
+    found = pc.ensemble(BOOK, (0, 0.6), starts, keep=over, max_steps=11, on_failure="ignore")
+    image, *_ = found.plot(ax=axes())
+    told = [text.get_text() for text in image.axes.get_legend().get_texts()]
+    blank, failed = np.isnan(found["first_event"]), ~found.success
+    assert (blank & ~failed).any()
+    assert failed.any()
+    assert told == [
+        f"did not happen: {(blank & ~failed).mean():.2%}", f"the run failed: {failed.mean():.2%}"
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -57,7 +70,6 @@ TWO = "ax: 1 axes: must be 2, for the values and for what is resolved"
     [
         ({"ax": "q[1]"}, TypeError, "ax = 'q\\[1\\]': must be matplotlib Axes, one$"),
         ({"ax": axes(2)}, ValueError, "ax: 2 axes: must be one"),
-        ({"ax": axes()} | MASK, ValueError, TWO),
         ({"what": axes()[0]}, TypeError, "what: is of type Axes: must name what is drawn; axes"),
         ({"colr": "r"}, TypeError, r"Ensemble\.plot has no parameter 'colr': did you mean"),
         ({"resolvd": 1}, TypeError, r"has no parameter 'resolvd': did you mean 'resolved'"),
@@ -65,7 +77,7 @@ TWO = "ax: 1 axes: must be 2, for the values and for what is resolved"
     ],
 )
 def test_what_a_figure_cannot_show_is_refused(plane, swept, given, error, told):
-    for found in (plane,) if told == TWO else (plane, swept):
+    for found in (plane, swept):
         with pytest.raises(error, match=told):
             found.plot(**given)
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from itertools import combinations
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
+from matplotlib.text import Text
 from pendcore.cli import main
-from pendcore.plotting import video
+from pendcore.plotting import LIGHT, video
 from pendcore.plotting.frames import frame_times, moves_of
 from PIL import Image
-from runs_that_kept_little import stage
+from runs_that_kept_little import chain_of, stage, trace_of
 
 SMALL = {"size": (160, 90), "fps": 10}
 
@@ -22,11 +24,6 @@ SMALL = {"size": (160, 90), "fps": 10}
 @pytest.fixture(scope="module")
 def sol():
     return pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 2))
-
-
-def chain(of, k):
-    """Return the places of the first chain in frame k."""
-    return np.array(of.show(k)[1].get_data()).T
 
 
 @pytest.mark.parametrize(
@@ -46,27 +43,65 @@ def test_two_runs_last_as_long_as_the_longer_one(sol):
     longer = pc.simulate(sol.scene, q0=1.0, t_span=(0, 3))
     film = stage(sol, longer)
     assert len(film.times) == 91
-    assert np.array_equal(chain(film, 80), chain(film, 90))  # the shorter one stays where it ends
+    assert np.array_equal(
+        chain_of(film, 80), chain_of(film, 90)
+    )  # the shorter one stays where it ends
 
 
 @pytest.mark.parametrize(
-    ("count", "given", "axes"), [(2, {}, 1), (2, {"beside": True}, 2), (1, {"energy": True}, 2)]
+    ("count", "given", "panels"),
+    [
+        (2, {}, ["$q_{2}$ (deg)"]),
+        (2, {"beside": True}, []),
+        (1, {}, ["$q_{1}$ (deg)", "$q_{2}$ (deg)"]),
+        (1, {"energy": True, "reactions": True}, ["energy (J)", "force (N)"]),
+        (1, {"size": (4.0, 4.0)}, []),
+        (1, {"size": (4.0, 6.0), "energy": True}, ["energy (J)"]),
+    ],
 )
 def test_several_runs_and_energies_have_their_axes_and_nothing_leaves_the_picture(
-    sol, count, given, axes
+    sol, count, given, panels
 ):
     film = stage(*[sol] * count, **given)
-    assert len(film.figure.axes) == axes
+    scenes = [one for one in film.figure.axes if one.get_aspect() == 1.0]
+    assert [one.get_ylabel() for one in film.figure.axes if one not in scenes] == panels
+    assert len(scenes) == (count if given.get("beside") else 1)
     places = moves_of(sol, film.times).places.reshape(-1, 2)
-    for axis in film.figure.axes[: axes if count == 2 else 1]:
+    for axis in scenes:
         assert axis.get_xlim()[0] < places[:, 0].min() <= places[:, 0].max() < axis.get_xlim()[1]
         low, high = sorted(axis.get_ylim())
         assert low < places[:, 1].min() <= places[:, 1].max() < high
         assert axis.yaxis_inverted()
 
 
+def test_arrows_neither_vanish_nor_leave_the_picture(sol):
+    """Free fall has no forces to show; a peak is no reason to hide all others."""
+    fast = pc.simulate(sol.scene, (0, 5), [-0.3, -0.8])
+    film = stage(fast, reactions=True)
+    forces, lengths = [], []
+    for k in range(len(film.times)):
+        arrows = film.show(k)[4]
+        lengths += [*np.hypot(arrows.U, arrows.V)]
+        forces += [*np.hypot(*moves_of(fast, film.times).reactions[k].T)]
+    assert max(forces) > 1.3 * np.percentile(forces, 95) > 20 * min(forces)
+    assert min(lengths) == pytest.approx(0.14 * 2)
+    assert max(lengths) == pytest.approx(0.4 * 2)
+    assert np.mean(np.array(lengths) > 0.39 * 2) == pytest.approx(0.05, abs=0.01)
+
+
+def test_names_stand_beside_their_tips_and_not_on_each_other(sol):
+    film = stage(sol, sol, sol, names=("one", "two", "three"))
+    texts = [x for x in film.show(20) if isinstance(x, Text)][:3]
+    film.figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in texts]
+    assert [text.get_text() for text in texts] == ["one", "two", "three"]
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+    stage_box = texts[0].axes.get_window_extent()
+    assert all(stage_box.containsx(box.x0) and stage_box.containsx(box.x1) for box in boxes)
+
+
 def test_the_whole_path_can_be_shown(sol):
-    assert len(stage(sol, trace=np.inf).show(60)[0].get_xdata()) == 4 * 60 + 1
+    assert len(trace_of(stage(sol, trace=np.inf), 60)) == 4 * 60 + 1
 
 
 def test_a_run_is_pale_past_its_horizon():
@@ -74,8 +109,10 @@ def test_a_run_is_pale_past_its_horizon():
     film = stage(chaotic, horizon=0.1)
     until = chaotic.valid_until()
     right, wrong = (int(np.searchsorted(film.times, until)) + k for k in (-2, 2))
-    assert film.show(right)[1].get_color() != "0.72"
-    assert film.show(wrong)[1].get_color() == "0.72"
+    assert film.show(right)[1].get_color() == LIGHT.red
+    assert film.show(wrong)[1].get_color() == LIGHT.lost
+    said = [text.get_text() for text in film.figure.subfigs[0].axes[0].texts]
+    assert f"right to 0.1 rad until {until:.4g} s" in said
 
 
 def test_a_gif_has_the_frames_the_size_the_time_and_the_chain(sol, tmp_path):
@@ -180,9 +217,8 @@ def test_what_cannot_be_animated_opens_no_figure(sol, given):
 
 def test_an_animation_draws_its_frames(sol):
     animation = sol.animate(sol, names=("one", "again"), energy=True)
-    assert animation._fig.axes[0].get_legend() is not None
-    shown = animation._func(10)
-    assert len(shown) == 6
+    named = [x.get_text() for x in animation._func(10) if isinstance(x, Text)]
+    assert named == ["one", "again", "t = 0.33 s"]
     animation._draw_was_started = True
 
 

@@ -11,7 +11,17 @@ import pendcore as pc
 import pytest
 from pendcore._run import dense_output
 from pendcore.page import html
-from runs_that_kept_little import BOTTOM, SWINGING, TEXTBOOK, axes, few, places, simulate, stage
+from runs_that_kept_little import (
+    BOTTOM,
+    SWINGING,
+    TEXTBOOK,
+    axes,
+    few,
+    places,
+    simulate,
+    stage,
+    trace_of,
+)
 
 
 def test_a_page_that_plays_back_has_the_dense_output(monkeypatch):
@@ -104,7 +114,7 @@ def test_chords_are_not_seen_where_links_are_fast(store):
     radius = np.hypot(*(path - center).T).max()
     middles = np.hypot(*((path[1:] + path[:-1]) / 2 - center).T)
     assert middles.min() > 0.99 * radius - 0.2
-    trace = np.array(stage(run, trace=1.0).show(60)[0].get_data()).T
+    trace = trace_of(stage(run, trace=1.0), 60)
     assert np.hypot(*((trace[1:] + trace[:-1]) / 2).T).min() > 0.99
 
 

@@ -7,8 +7,9 @@ import pendcore as pc
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from pendcore.plotting import as_drawn
-from pendcore.plotting.stage import Choices, Stage
+from runs_that_kept_little import stage
 
 UNREADABLE = ["Ba$$in", r"$\nonsense$", "$a_{$ b", r"\$ $$"]
 NAMES = [*UNREADABLE, "_a", "__", "_$$", "5 $", r"$\theta$ sweep", "plain", "#%&{}^~"]
@@ -41,12 +42,10 @@ def test_other_texts_are_drawn_as_matplotlib_draws_them(text):
 
 
 def test_a_film_shows_the_name_of_every_run(sol):
-    figure = Stage([sol] * len(NAMES), Figure, Choices(), NAMES).figure
-    legend = figure.axes[0].get_legend()
-    assert legend is not None
-    texts = [one.get_text().strip() for one in legend.get_texts()]
+    film = stage(*[sol] * len(NAMES), names=NAMES)
+    *texts, _ = (x.get_text().strip() for x in film.show(0) if isinstance(x, Text))
     assert texts == [as_drawn(name) for name in NAMES]
-    figure.draw_without_rendering()
+    film.figure.draw_without_rendering()
 
 
 @pytest.mark.few_cases
@@ -56,12 +55,11 @@ def test_a_figure_shows_its_label(sol, what, name):
     figure = Figure()
     axes = figure.subplots(2 if what in ("angles", "reactions") else 1, 1)
     sol.plot(what, axes, label=name)
-    for axis in figure.axes:
-        legend = axis.get_legend()
-        assert legend is not None
-        shown = [one.get_text() for one in legend.get_texts()]
-        assert shown
-        assert all(one.endswith(as_drawn(name)) for one in shown)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    shown = [one.get_text() for one in legend.get_texts()]
+    assert shown
+    assert all(one.endswith(as_drawn(name)) for one in shown)
     figure.draw_without_rendering()
 
 

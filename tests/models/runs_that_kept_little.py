@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pendcore as pc
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from pendcore.plotting.stage import Choices, Stage
 
 TEXTBOOK = pc.Scene.textbook()
@@ -107,8 +110,15 @@ RUNS: dict[str, Pair] = {
 }
 
 
-def stage(*runs: pc.Solution, **given: Any) -> Stage:
-    return Stage(runs, Figure, Choices(**given), [""] * len(runs))
+def stage(
+    *runs: pc.Solution,
+    names: Sequence[str] = (),
+    size: tuple[float, float] = (8.0, 4.5),
+    **given: Any,
+) -> Stage:
+    """Return a film's picture; the size is in inches."""
+    called = names or [""] * len(runs)
+    return Stage(runs, partial(Figure, figsize=size), Choices(**given), called)
 
 
 def axes(rows: int = 1) -> Any:
@@ -117,3 +127,20 @@ def axes(rows: int = 1) -> Any:
 
 def places(run: pc.Solution, t: Any) -> Any:
     return run.scene._compiled.positions(t, np.ascontiguousarray(run(t)[: len(run.scene.links)].T))
+
+
+def chain_of(film: Stage, k: int) -> np.ndarray:
+    """Return where the joints of the first chain are in frame k, (n+1, 2)."""
+    return joints_of(film.show(k))
+
+
+def joints_of(shown: Sequence[Artist]) -> np.ndarray:
+    """Return where the joints of the first chain are among what a frame shows, (n+1, 2)."""
+    joints = next(x for x in shown if isinstance(x, Line2D) and x.get_marker() == "o")
+    return np.array(joints.get_data()).T
+
+
+def trace_of(film: Stage, k: int) -> np.ndarray:
+    """Return the tip's path in frame k, (points, 2); its parts meet."""
+    parts = film.show(k)[0].get_segments()
+    return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])

@@ -359,10 +359,10 @@ class Ensemble:
         what : str, optional
             A reducer with one number for each member, or a component of the end state: ``"q[1]"``,
             ``"qd[2]"``. Default: the first such reducer, or ``"q[1]"``.
-        ax : Axes or two Axes, optional
+        ax : Axes, optional
             Default: those of a new figure of pyplot's, which is not shown.
         resolved : array_like of bool, (...), optional
-            What `resolved` found. A map shows it in a second axes, a curve by marks.
+            What `resolved` found: what is not resolved is marked in red.
         **properties
             Passed on to matplotlib's ``pcolormesh`` or ``plot``.
 

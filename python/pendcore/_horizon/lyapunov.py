@@ -125,17 +125,17 @@ class LyapunovExponents:
 
         ``ax`` is an axes of matplotlib's; the rest are properties of its ``Line2D``.
         """
-        if ax is None:
-            import matplotlib.pyplot as plt
+        from pendcore.plotting.axes import grid, new_axes
+        from pendcore.plotting.style import theme_of
 
-            ax = plt.figure(figsize=(6.4, 4.0), layout="constrained").subplots()
-        properties = {"color": "k", "linewidth": 1.2, **line_properties}
+        (ax,) = new_axes((6.4, 4.0)) if ax is None else (ax,)
+        properties = {"color": theme_of(ax).ink, **line_properties}
         lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
         ax.set_xlabel("t (s)")
         ax.set_ylabel("finite-time Lyapunov exponents (1/s)")
-        ax.axhline(0.0, color="0.6", linewidth=0.8, zorder=0)
+        ax.axhline(0.0, color=theme_of(ax).quiet, linewidth=0.8, zorder=0)
         ax.margins(x=0)
-        ax.grid(True, alpha=0.4)
+        grid(ax)
         return lines
 
 

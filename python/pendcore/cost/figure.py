@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
 from pendcore.cost.runs import line_style
-from pendcore.plotting import as_drawn
+from pendcore.plotting import as_drawn, grid, new_axes, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,19 +33,19 @@ def plot(
     if y not in ("time", "nfev"):
         raise ValueError(f'y = {y!r}: must be "time" or "nfev"')
     if ax is None:
-        import matplotlib.pyplot as plt
-
-        ax = plt.figure(figsize=(7.6, 4.6), layout="constrained").subplots()
+        (ax,) = new_axes((7.6, 4.6))
     if not isinstance(ax, Axes):
         raise TypeError(f"ax = {ax!r}: must be matplotlib Axes")
+    theme = theme_of(ax)
     drawn = [p for p in points if not p.failure and p.error > 0]
     factor, unit = _unit(drawn) if y == "time" else (1.0, "")
     lines = []
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
-        given = {"markersize": 5, **line_style(method), "label": method, **line_properties}
+        usual = {"markerfacecolor": theme.ground, "markersize": 5, "label": method}
+        given = {**usual, **line_style(method), **line_properties}
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
-        (line,) = ax.plot([p.error for p in ours], height, **{"markerfacecolor": "white", **given})
+        (line,) = ax.plot([p.error for p in ours], height, **given)
         lines.append(line)
         on_front = [(p.error, h) for p, h in zip(ours, height, strict=True) if p in best]
         if on_front and y == "time":
@@ -67,6 +67,7 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
     from matplotlib.patches import Patch
     from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
 
+    theme = theme_of(ax)
     ax.set(xscale="log", yscale="log")
     ax.set_xlabel("largest position error / total length (more accurate to the right)")
     counted = "right-hand sides"
@@ -80,21 +81,20 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
         edge = max(uncertainty, 1e-17)
         right = min(right, edge / 3)
         ax.set_xlim(left, right)
-        ax.axvspan(right, edge, color="0.88", zorder=0)
+        ax.axvspan(right, edge, color=theme.line, zorder=0)
     ax.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
     ax.xaxis.set_minor_formatter(NullFormatter())
     if y == "time":  # plain numbers, also between powers of ten where there are few powers
         ax.yaxis.set_major_formatter(LogFormatter())
         ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
-    ax.grid(which="major", color="0.85", linewidth=0.6)
-    ax.set_axisbelow(True)
+    grid(ax)
     handles, _ = ax.get_legend_handles_labels()
-    unknown = Patch(color="0.88", label="the reference is\nuncertain by this")
+    unknown = Patch(color=theme.line, label="the reference is\nuncertain by this")
     if y == "time":
         from matplotlib.lines import Line2D
 
         filled = "filled: no other is\nboth better and faster"
-        handles.append(Line2D([], [], linestyle="", marker="o", color="0.2", label=filled))
+        handles.append(Line2D([], [], ls="", marker="o", color=theme.ink, label=filled))
     handles += [unknown] * is_known
     fine = {p.method for p in points if not p.failure}
     if failed := [m for m in dict.fromkeys(p.method for p in points) if m not in fine]:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from pendcore.plotting.map import Axis, Shown, draw_map, is_wide, new_axes
+from pendcore.plotting.axes import grid, legend_above, new_axes
+from pendcore.plotting.map import Axis, Shown, draw_map, is_wide
 from pendcore.plotting.plot import KINDS, save_figure
-from pendcore.plotting.style import as_drawn
+from pendcore.plotting.style import DARK, LIGHT, Theme, as_drawn, css_variables, sheet, theme_of
 
-__all__ = ["KINDS", "Axis", "Shown", "as_drawn", "draw_map", "is_wide", "new_axes", "save_figure"]
+__all__ = [
+    "DARK", "KINDS", "LIGHT", "Axis", "Shown", "Theme", "as_drawn", "css_variables", "draw_map",
+    "grid", "is_wide", "legend_above", "new_axes", "save_figure", "sheet", "theme_of",
+]  # fmt: skip

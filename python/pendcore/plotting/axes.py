@@ -11,7 +11,7 @@ import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import require_known
-from pendcore.plotting.style import SHADE
+from pendcore.plotting.style import applied, keep_style, theme_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -40,6 +40,8 @@ class Request:
         Makes the figure where no axes are given.
     valid_until : float or None
         s; what lies past it is shaded or pale.
+    horizon : float or None
+        rad, the error that is reached then.
     properties : dict
         Those of the lines.
     """
@@ -52,32 +54,66 @@ class Request:
     link: int | None = None
     new_figure: NewFigure = figure_of_pyplot
     valid_until: float | None = None
+    horizon: float | None = None
     properties: dict[str, Any] = field(default_factory=dict)
 
     def one_axes(self, size: tuple[float, float]) -> Axes:
         """Return the axes that were given, or those of a new figure of a size, inches."""
         if self.ax is None:
-            return self.new_figure(figsize=size, layout="constrained").subplots()
+            return new_axes(size, new_figure=self.new_figure)[0]
         return checked_axes(self.ax, (1,), "")[0]
 
     def stacked_axes(self, counts: Sequence[int], which: str) -> list[Axes]:
         """Return the axes that were given, or the most of ``counts`` in a new figure."""
-        ax, rows = self.ax, max(counts)
-        if ax is None:
-            figure = self.new_figure(figsize=(6.4, max(4.8, 1.8 * rows)), layout="constrained")
-            ax = figure.subplots(rows, 1, squeeze=False)
-        return checked_axes(ax, counts, which)
+        if self.ax is None:
+            rows = max(counts)
+            size = 6.4, max(3.6, 0.6 + 1.8 * rows)
+            return new_axes(size, rows, new_figure=self.new_figure)
+        return checked_axes(self.ax, counts, which)
 
     def name_of(self, curve: str) -> str:
         """Return what the legend calls a curve: with the solution's label, if that has one."""
         return curve if self.label is None else f"{curve}, {self.label}"
 
     def shade(self, axes: Sequence[Axes]) -> None:
-        """Shade the times past which nothing is right."""
+        """Shade the times past which nothing is right; the first axes say so in their legend."""
         end = self.solution.t_reached
-        if self.valid_until not in (None, end):
-            for axis in axes:
-                axis.axvspan(self.valid_until, end, **SHADE)
+        if self.valid_until in (None, end):
+            return
+        for axis in axes:
+            colors = theme_of(axis)
+            how: dict[str, Any] = {"facecolor": colors.line, "alpha": 0.6, "zorder": 0}
+            axis.axvspan(self.valid_until, end, label=self.until(), **how)
+
+    def until(self) -> str:
+        """Return the sentence that says until when a run is right."""
+        right = "right" if self.horizon is None else f"right to {self.horizon:g} rad"
+        return f"{right} until {self.valid_until:.4g} s"
+
+
+def new_axes(
+    size: tuple[float, float],
+    rows: int = 1,
+    columns: int = 1,
+    new_figure: NewFigure = figure_of_pyplot,
+) -> list[Axes]:
+    """Return the axes of a new figure in the house's style, row by row; columns share their x."""
+    with applied():
+        figure = new_figure(figsize=size, layout="constrained")
+        axes = list(figure.subplots(rows, columns, squeeze=False, sharex="col").ravel())
+        for axis in axes:
+            keep_style(axis)
+    return axes
+
+
+def legend_above(axis: Axes, handles: Sequence[Artist] | None = None) -> None:
+    """Name the curves, or the handles, above the axes, where no curve is."""
+    handles = axis.get_legend_handles_labels()[0] if handles is None else handles
+    if handles:
+        axis.legend(
+            handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3,
+            borderaxespad=0.2, borderpad=0.0, frameon=False, fontsize="small",
+        )  # fmt: skip
 
 
 def checked_axes(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:
@@ -121,14 +157,23 @@ def whole_names(
     return whole
 
 
-def in_plane(axis: Axes) -> None:
-    """Let the axes show the plane as the project has it: to scale, with y downwards."""
-    axis.set_aspect("equal", adjustable="datalim")
+def in_plane(axis: Axes, *, is_fitted: bool = False) -> None:
+    """Let the axes show the plane as the project has it: to scale, with y downwards.
+
+    Axes that are fitted are no larger than what is drawn; others show more of the plane.
+    """
+    axis.set_aspect("equal", adjustable="box" if is_fitted else "datalim")
     if not axis.yaxis_inverted():
         axis.invert_yaxis()
     axis.set_xlabel("x (m)")
     axis.set_ylabel("y (m), downwards")
-    axis.grid(True, alpha=0.4)
+    grid(axis)
+
+
+def grid(axis: Axes) -> None:
+    """Draw the house's grid."""
+    axis.grid(True, color=theme_of(axis).line, linewidth=0.6)
+    axis.set_axisbelow(True)
 
 
 def point_style(t: npt.NDArray[np.float64]) -> str:

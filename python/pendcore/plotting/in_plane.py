@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore.messages import Floats, whole_number
-from pendcore.plotting.axes import Request, in_plane, point_style
+from pendcore.plotting.axes import Request, grid, in_plane, legend_above, point_style
 from pendcore.plotting.curve import curve_of
-from pendcore.plotting.style import COLORS, DASHES, PALE
+from pendcore.plotting.style import DASHES, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -21,17 +21,19 @@ _SIZE = (5.4, 5.4)
 
 def draw_path(asked: Request) -> list[Artist]:
     """Draw the path of the tip, m, with the chain at the start and at the end."""
-    axis = asked.one_axes(_SIZE)
     t, q, _, _ = curve_of(asked.solution)
     places = asked.solution.scene.positions(t, q)
-    color = COLORS[len(axis.lines) // 3 % len(COLORS)]
-    for pose, shade in ((places[0], "0.7"), (places[-1], "0.2")):
-        axis.plot(*pose.T, "o-", color=shade, linewidth=1.2, markersize=3, zorder=1.5)
+    axis = asked.one_axes(_fitting(places))
+    theme = theme_of(axis)
+    color = theme.links[(len(q[0]) - 1 + len(axis.lines) // 3) % len(theme.links)]
+    ends = (places[0], theme.lost, "start"), (places[-1], theme.ink, "end")
+    for pose, shade, name in ends:
+        how: dict[str, Any] = {"color": shade, "label": f"_{name}" if asked.label else name}
+        axis.plot(*pose.T, "o-", linewidth=1.4, markersize=3.5, zorder=1.5, **how)
     ours = {"color": color, "label": asked.label or "tip"}
     lines = _draw(axis, t, places[:, -1], asked, ours)
-    in_plane(axis)
-    if asked.label is not None:
-        axis.legend()
+    in_plane(axis, is_fitted=asked.ax is None)
+    legend_above(axis)
     return lines
 
 
@@ -39,13 +41,14 @@ def draw_phase(asked: Request) -> list[Artist]:
     """Draw the rate of each link (rad/s) over its angle (rad)."""
     axis = asked.one_axes(_SIZE)
     t, q, qd, _ = curve_of(asked.solution)
+    colors = theme_of(axis).links
     dashes = DASHES[len(axis.lines) // q.shape[1] % len(DASHES)]
     lines: list[Artist] = []
     for i, curve in enumerate(np.stack([q, qd], axis=-1).swapaxes(0, 1)):
-        color, name = COLORS[i % len(COLORS)], asked.name_of(f"link {i + 1}")
-        lines += _draw(axis, t, curve, asked, {"color": color, "linestyle": dashes, "label": name})
-    _name_phase(axis, "q", "qd")
-    axis.legend()
+        ours = {"color": colors[i % len(colors)], "label": asked.name_of(f"link {i + 1}")}
+        lines += _draw(axis, t, curve, asked, ours | {"linestyle": dashes})
+    _name_phase(axis, "")
+    legend_above(axis)
     return lines
 
 
@@ -58,30 +61,49 @@ def draw_section(asked: Request) -> list[Artist]:
             "events=[pc.events.LinkAngle(1, np.pi / 2, direction=1)]), say"
         )
     event = _within("event", asked.event, 0, len(events) - 1)
-    link = _within("link", asked.link, 1, len(asked.solution.scene.links))
-    axis = asked.one_axes(_SIZE)
     found = events[event]
-    angle = (found.q[:, link - 1] + np.pi) % (2 * np.pi) - np.pi
-    ours: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 2.5, "color": COLORS[0]}
-    ours = {**ours, "label": asked.label, **asked.properties}
-    lines = axis.plot(angle, found.qd[:, link - 1], **ours)
-    _name_phase(axis, f"q{link}", f"qd{link}")
+    angles = (found.q + np.pi) % (2 * np.pi) - np.pi
+    usual = _moving(angles) if asked.link is None else asked.link
+    link = _within("link", usual, 1, angles.shape[1])
+    axis = asked.one_axes(_SIZE)
+    colors = theme_of(axis).links
+    ours: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 2.5}
+    ours |= {"color": colors[(link - 1) % len(colors)], "label": asked.label}
+    lines = axis.plot(angles[:, link - 1], found.qd[:, link - 1], **{**ours, **asked.properties})
+    _name_phase(axis, f"_{{{link}}}")
     axis.set_xlim(-np.pi, np.pi)
     if asked.label is not None:
-        axis.legend()
+        legend_above(axis)
     return [*lines]
+
+
+def _moving(angles: Floats) -> int:
+    """Return the first link whose angle is not the same at every event, or 1."""
+    spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
+    return int(np.argmax(spans > 1e-6)) + 1
+
+
+def _fitting(places: Floats) -> tuple[float, float]:
+    """Return the size of a figure, inches, into which places (..., 2), m, fit to scale."""
+    width, height = np.ptp(places.reshape(-1, 2), axis=0)
+    across, down = _SIZE[0] - 0.8, float(np.clip(height / max(width, 1e-300), 0.3, 1.3))
+    return _SIZE[0], across * down + 0.9
 
 
 def _draw(
     axis: Axes, t: Floats, points: Floats, asked: Request, ours: dict[str, Any]
 ) -> list[Artist]:
-    """Draw a curve (k, 2), pale where it is past the horizon."""
+    """Draw a curve (k, 2), pale where it is past the horizon; its name says until when."""
     how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
     last = t[-1] if asked.valid_until is None else asked.valid_until
     right = t <= last if t[-1] >= t[0] else t >= last
     lines = axis.plot(*points[right].T, **how)
     if not right.all():
-        axis.plot(*points[max(int(right.sum()) - 1, 0) :].T, **PALE)
+        past = points[max(int(right.sum()) - 1, 0) :]
+        known = {line.get_label() for line in axis.lines}
+        said = f"pale: {asked.until()}, not after"
+        pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
+        axis.plot(*past.T, label="_" if said in known else said, **pale)
     return [*lines]
 
 
@@ -93,7 +115,7 @@ def _within(name: str, given: int | None, least: int, most: int) -> int:
     return value
 
 
-def _name_phase(axis: Axes, angle: str, rate: str) -> None:
-    axis.set_xlabel(f"{angle} (rad)")
-    axis.set_ylabel(f"{rate} (rad/s)")
-    axis.grid(True, alpha=0.4)
+def _name_phase(axis: Axes, index: str) -> None:
+    axis.set_xlabel(f"$q{index}$ (rad)")
+    axis.set_ylabel(rf"$\dot q{index}$ (rad/s)")
+    grid(axis)

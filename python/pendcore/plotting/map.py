@@ -9,26 +9,27 @@ import numpy.typing as npt
 
 from pendcore import Ensemble
 from pendcore.messages import Floats
-from pendcore.plotting.axes import (
-    NewFigure,
-    checked_axes,
-    figure_of_pyplot,
-    require_name,
-    whole_names,
-)
-from pendcore.plotting.style import RESOLVED, UNRESOLVED, as_drawn
+from pendcore.plotting.axes import checked_axes, legend_above, new_axes, require_name, whole_names
+from pendcore.plotting.style import as_drawn, theme_of
+from pendcore.reducers import FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
+SIZE = (6.4, 5.2)
+"""inches"""
 
 Mask = npt.NDArray[np.bool_]
 
 
 class Shown(NamedTuple):
-    """What a figure shows: a text with its unit, values, and whether their scale is logarithmic."""
+    """What a figure shows: a text with its unit, values, and whether their scale is logarithmic.
+
+    ``blanks`` are the members without a value, by why they have none.
+    """
 
     label: str
     values: Floats
+    blanks: dict[str, Mask]
     is_log: bool = False
 
 
@@ -56,22 +57,14 @@ def plot(
     mask = None if resolved is None else np.asarray(resolved, dtype=bool)
     if mask is not None and mask.shape != found.shape:
         raise ValueError(f"resolved: shape {mask.shape}: must be {found.shape}")
-    count = 1 if dimensions == 1 or mask is None else 2
     if dimensions == 1:
         given = whole_names(Ensemble.plot, Line2D, properties)
     else:
         given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
-    which = "for the values and for what is resolved"
-    axes = new_axes(count) if ax is None else checked_axes(ax, (count,), which)
+    axis = new_axes(SIZE)[0] if ax is None else checked_axes(ax, (1,), "")[0]
     if dimensions == 1:
-        return _draw_curve(axes[0], axis_of(found, 0), shown, mask, given)
-    return draw_map(axes, axis_of(found, 0), axis_of(found, 1), shown, mask, given)
-
-
-def new_axes(count: int, new_figure: NewFigure = figure_of_pyplot) -> list[Any]:
-    """Return so many axes of a new figure, side by side."""
-    figure = new_figure(layout="constrained", figsize=(6.0 * count, 4.8))
-    return list(np.atleast_1d(figure.subplots(1, count, sharex=True, sharey=True)))
+        return _draw_curve(axis, axis_of(found, 0), shown, mask, given)
+    return draw_map(axis, axis_of(found, 0), axis_of(found, 1), shown, mask, given)
 
 
 def shown_of(found: Ensemble, what: str | None) -> Shown:
@@ -86,7 +79,8 @@ def shown_of(found: Ensemble, what: str | None) -> Shown:
             raise ValueError(f"what = {what!r}: has several numbers for each member: draw them")
         label = as_drawn(f"{what.replace('_', ' ')} ({reducer.unit})")
         is_log = reducer.is_log_if_wide and is_wide(found[what])
-        return Shown(label, found[what], is_log)
+        why = "did not happen" if isinstance(reducer, FirstEvent) else "no value"
+        return Shown(label, found[what], _blanks(found, found[what], why), is_log)
     if found.request.t_eval is not None:
         raise ValueError(
             'keep="times" keeps states at several times, which are not one number for each member: '
@@ -98,7 +92,14 @@ def shown_of(found: Ensemble, what: str | None) -> Shown:
         raise ValueError(f"what = {what!r}: must be one of {', '.join([*reducers, *known])}")
     kind, _, number = what.partition("[")
     values = getattr(found, kind)[..., int(number[:-1]) - 1]
-    return Shown(f"{what} at the end ({'rad' if kind == 'q' else 'rad/s'})", values)
+    label = f"{what} at the end ({'rad' if kind == 'q' else 'rad/s'})"
+    return Shown(label, values, _blanks(found, values, "no value"))
+
+
+def _blanks(found: Ensemble, values: Floats, why: str) -> dict[str, Mask]:
+    """Return which members have no value, by why that is so."""
+    is_blank = ~np.isfinite(values)
+    return {why: is_blank & found.success, "the run failed": is_blank & ~found.success}
 
 
 def is_wide(values: Floats) -> bool:
@@ -126,43 +127,54 @@ def axis_of(found: Ensemble, k: int) -> Axis:
 
 
 def draw_map(
-    axes: list[Any], x: Axis, y: Axis, shown: Shown, mask: Mask | None, properties: dict[str, Any]
+    axis: Any, x: Axis, y: Axis, shown: Shown, resolved: Mask | None, properties: dict[str, Any]
 ) -> list[Any]:
-    """Draw values (n_x, n_y), and in a second one of the axes which of them are resolved."""
-    from matplotlib.colors import ListedColormap
+    """Draw values (n_x, n_y), and mark what is not resolved, and what has no value."""
+    from matplotlib.patches import Patch
 
+    theme = theme_of(axis)
     values = np.ma.masked_invalid(shown.values)
     if shown.is_log:
         values = np.ma.masked_where(~(values > 0), values)
         properties = {"norm": "log"} | properties
-    for ax in axes:
-        ax.set_xlabel(x.label)
-        ax.set_ylabel(y.label)
-    image = axes[0].pcolormesh(
-        x.values, y.values, values.T, **({"shading": "nearest", "rasterized": True} | properties)
-    )
-    axes[0].figure.colorbar(image, ax=axes[0], label=shown.label)
-    if mask is None:
-        return [image]
-    trust = axes[1].pcolormesh(
-        x.values, y.values, mask.T.astype(float), cmap=ListedColormap([UNRESOLVED, RESOLVED]),
-        vmin=0, vmax=1, shading="nearest", rasterized=True,
-    )  # fmt: skip
-    bar = axes[1].figure.colorbar(trust, ax=axes[1], ticks=[0.25, 0.75])
-    bar.ax.set_yticklabels(["not\nresolved", "resolved"])
-    axes[1].set_title(f"resolved: {mask.mean():.1%}")
-    return [image, trust]
+    ours = {"shading": "nearest", "rasterized": True, "cmap": "viridis"}
+    image = axis.pcolormesh(x.values, y.values, values.T, **(ours | properties))
+    axis.set(xlabel=x.label, ylabel=y.label)
+    axis.figure.colorbar(image, ax=axis, label=shown.label)
+    grounds = zip(shown.blanks.items(), (theme.ground, theme.line, theme.quiet), strict=False)
+    marks = [(name, mask, color) for (name, mask), color in grounds]
+    if resolved is not None:
+        marks.append(("not resolved", ~resolved, theme.red))
+    drawn, patches = [image], []
+    for name, mask, color in marks:
+        if mask.any():
+            drawn.append(_mark(axis, x, y, mask, color))
+            share = f"{name}: {mask.mean():.2%}"
+            patches.append(Patch(facecolor=color, edgecolor=theme.quiet, label=share))
+    legend_above(axis, patches)
+    return drawn
+
+
+def _mark(axis: Any, x: Axis, y: Axis, mask: Mask, color: str) -> Any:
+    """Fill the pixels of a mask (n_x, n_y) with a colour."""
+    from matplotlib.colors import ListedColormap
+
+    pixels = np.ma.masked_where(~mask, np.ones(mask.shape)).T
+    how = {"cmap": ListedColormap([color]), "shading": "nearest", "rasterized": True}
+    return axis.pcolormesh(x.values, y.values, pixels, **how)
 
 
 def _draw_curve(
-    ax: Any, x: Axis, shown: Shown, mask: Mask | None, properties: dict[str, Any]
+    axis: Any, x: Axis, shown: Shown, resolved: Mask | None, properties: dict[str, Any]
 ) -> list[Any]:
-    artists = list(ax.plot(x.values, shown.values, **({"marker": "."} | properties)))
-    if mask is not None:
-        known = {"color": UNRESOLVED, "marker": "x", "linestyle": "none", "label": "not resolved"}
-        artists += ax.plot(x.values[~mask], shown.values[~mask], **known)
-        ax.legend()
-    ax.set(xlabel=x.label, ylabel=shown.label)
+    ours = {"marker": ".", "color": theme_of(axis).ink}
+    artists = list(axis.plot(x.values, shown.values, **(ours | properties)))
+    if resolved is not None:
+        marks = {"marker": "x", "linestyle": "none", "color": theme_of(axis).red}
+        at = ~resolved
+        artists += axis.plot(x.values[at], shown.values[at], label="not resolved", **marks)
+        legend_above(axis)
+    axis.set(xlabel=x.label, ylabel=shown.label)
     if shown.is_log:
-        ax.set_yscale("log", nonpositive="mask")
+        axis.set_yscale("log", nonpositive="mask")
     return artists

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from pendcore import Energy, Solution
+from pendcore import Energy
 from pendcore.messages import Floats
-from pendcore.plotting.axes import Request, point_style
+from pendcore.plotting.axes import Request, grid, legend_above, point_style
 from pendcore.plotting.curve import curve_of
-from pendcore.plotting.style import COLORS, DASHES, OUTSIDE, SUM
+from pendcore.plotting.style import DASHES, Theme, theme_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
@@ -23,8 +22,8 @@ _LEAST_SPAN = 0.1
 """deg, the least span of the angle axis, so that rest does not look like its last bits."""
 
 
-Curves: TypeAlias = "dict[str, tuple[Floats, dict[str, Any]]]"
-"""The values of each curve, (k,), by its name, and how it is drawn."""
+Curves: TypeAlias = "dict[str, tuple[Floats, str]]"
+"""The values of each curve, (k,), and its colour, by its name."""
 
 
 def draw_angles(asked: Request) -> list[Artist]:
@@ -36,54 +35,85 @@ def draw_angles(asked: Request) -> list[Artist]:
 def draw_rates(asked: Request) -> list[Artist]:
     """Draw the rate of each link, rad/s."""
     curve = curve_of(asked.solution)
-    return _draw_links(asked, curve.t, curve.qd, "qd", "rad/s")
+    return _draw_links(asked, curve.t, curve.qd, r"\dot q", "rad/s")
 
 
 def draw_reactions(asked: Request) -> list[Artist]:
     """Draw the force on each link at its joint, N: x, y (downwards) and size."""
     t, q, qd, _ = curve_of(asked.solution)
-    scene, panels = asked.solution.scene, {}
-    n = len(scene.links)
-    for i, force in enumerate(np.moveaxis(scene.reactions(t, q, qd), 1, 0)):
-        name = f"F_{i}{i + 1}" if n < 10 else f"F_{i},{i + 1}"
+    forces = np.moveaxis(asked.solution.scene.reactions(t, q, qd), 1, 0)
+    axes = asked.stacked_axes((len(forces),), "one for each joint")
+    theme = theme_of(axes[0])
+    panels: dict[str, Curves] = {}
+    for i, force in enumerate(forces):
         x, y = force.T
-        sizes = {f"|{name}|": np.hypot(x, y)}
-        panels[f"{name} (N)"] = _colored({f"{name} x": x, f"{name} y": y}, sizes)
-    axes = asked.stacked_axes((n,), "one for each joint")
-    return _draw(asked, axes, t, panels, legend=OUTSIDE)
+        parts = {"x": x, "y, downwards": y}
+        panels[f"${force_name(i, i + 1)}$ (N)"] = with_sum(parts, {"size": np.hypot(x, y)}, theme)
+    return _draw(asked, axes, t, panels, named=1)
 
 
 def draw_energy(asked: Request) -> list[Artist]:
-    """Draw kinetic, potential and total energy, J, and below them the entries of the ledger."""
+    """Draw kinetic, potential and total energy, J, and below them the ledger and its residual."""
     curve = curve_of(asked.solution)
     energy = curve.energy()
-    panels = _energies(energy)
+    has_ledger = energy.ledger is not None
+    axes = asked.stacked_axes(
+        (3,) if has_ledger else (1,), "for the energies, the ledger and its residual"
+    )
+    theme = theme_of(axes[0])
+    panels = {"energy (J)": _energies(energy, theme)}
     if energy.ledger is not None:
+        booked = dict(energy.ledger.items())
+        residual = booked.pop("residual")
         losses = energy.ledger.losses
-        booked = {f"{x} (lost)" if x in losses else x: y for x, y in energy.ledger.items()}
-        panels["work and loss (J)"] = _colored(booked)
-    which = "one for the energies and one for the ledger"
-    axes = asked.stacked_axes((len(panels),), which)
-    return _draw(asked, axes, curve.t, panels, legend=OUTSIDE)
+        parts = {f"{x} (lost)" if x in losses else x: y for x, y in booked.items()}
+        panels["work and loss (J)"] = with_sum(parts, {}, theme)
+        panels["residual (J)"] = {"residual": (residual, theme.ink)}
+    return _draw(asked, axes, curve.t, panels, named=2)
 
 
-def draw_energies(solution: Solution, axis: Axes) -> None:
+def draw_energies(asked: Request) -> list[Artist]:
     """Draw kinetic, potential and total energy, J, on one axes, whatever else there is."""
-    curve = curve_of(solution)
-    asked = Request(solution=solution)
-    _draw(asked, [axis], curve.t, _energies(curve.energy()), legend=OUTSIDE)
+    curve = curve_of(asked.solution)
+    axes = asked.stacked_axes((1,), "")
+    panels = {"energy (J)": _energies(curve.energy(), theme_of(axes[0]))}
+    return _draw(asked, axes, curve.t, panels, named=1)
 
 
-def _energies(energy: Energy) -> dict[str, Curves]:
+def draw_force_sizes(asked: Request, percentile: float) -> list[Artist]:
+    """Draw the size of the force at each joint, N, in its link's colour, on one axes.
+
+    Peaks leave the axes where they are far above what a percentile of the sizes is.
+    """
+    t, q, qd, _ = curve_of(asked.solution)
+    sizes = np.hypot(*np.moveaxis(asked.solution.scene.reactions(t, q, qd), -1, 0)).T
+    axes = asked.stacked_axes((1,), "")
+    colors = cycle(theme_of(axes[0]).links)
+    curves = {f"$|{force_name(i, i + 1)}|$": (x, next(colors)) for i, x in enumerate(sizes)}
+    lines = _draw(asked, axes, t, {"force (N)": curves}, named=1)
+    typical = float(np.percentile(sizes.max(axis=0), percentile))
+    if sizes.max() > 1.5 * typical:
+        axes[0].set_ylim(0.0, 1.5 * typical)
+    return lines
+
+
+def force_name(first: int, second: int) -> str:
+    """Return the name in LaTeX of the force that a link exerts on another; 0 is the ground."""
+    comma = "," if max(first, second) > 9 else ""
+    return f"F_{{{first}{comma}{second}}}"
+
+
+def with_sum(parts: dict[str, Floats], sums: dict[str, Floats], theme: Theme) -> Curves:
+    """Return curves in colours, and what they make up in ink, behind them."""
+    own = {
+        name: (x, theme.parts[k % len(theme.parts)]) for k, (name, x) in enumerate(parts.items())
+    }
+    return own | {name: (x, theme.ink) for name, x in sums.items()}
+
+
+def _energies(energy: Energy, theme: Theme) -> Curves:
     parts = {"kinetic": energy.kinetic, "potential": energy.potential}
-    return {"energy (J)": _colored(parts, {"total": energy.total})}
-
-
-def _colored(parts: dict[str, Floats], sums: dict[str, Floats] | None = None) -> Curves:
-    """Return curves in colours, and those that are made of them in grey."""
-    colors = cycle(COLORS)
-    curves: Curves = {name: (x, {"color": next(colors)}) for name, x in parts.items()}
-    return curves | {name: (x, SUM) for name, x in (sums or {}).items()}
+    return with_sum(parts, {"total": energy.total}, theme)
 
 
 def _draw_links(
@@ -92,13 +122,16 @@ def _draw_links(
     """Draw a number of each link, (k, n), each on its own axes or all on one."""
     n = values.shape[1]
     axes = asked.stacked_axes((1, n), "one for each link")
-    curves = _colored({f"{symbol}{i + 1}": x for i, x in enumerate(values.T)})
+    colors = theme_of(axes[0]).links
+    curves = {
+        f"${symbol}_{{{i + 1}}}$": (x, colors[i % len(colors)]) for i, x in enumerate(values.T)
+    }
     is_apart = len(axes) == n
-    panels = {f"{symbol} ({unit})": curves}
+    panels = {f"${symbol}$ ({unit})": curves}
     if is_apart:
         panels = {f"{name} ({unit})": {name: x} for name, x in curves.items()}
-    legend: dict[str, Any] | None = None if is_apart and asked.label is None else {}
-    return _draw(asked, axes, t, panels, legend, is_apart=is_apart, least_span=least_span)
+    named = 0 if is_apart and asked.label is None else n
+    return _draw(asked, axes, t, panels, named, is_apart=is_apart, least_span=least_span)
 
 
 def _draw(
@@ -106,25 +139,28 @@ def _draw(
     axes: Sequence[Axes],
     t: Floats,
     panels: dict[str, Curves],
-    legend: dict[str, Any] | None,
+    named: int,
     *,
     is_apart: bool = False,
     least_span: float = 0.0,
 ) -> list[Artist]:
-    """Draw each panel on its axes; the legend calls a curve that is apart by its solution alone."""
+    """Draw each panel on its axes; the first few, ``named``, name their curves in a legend.
+
+    The legend calls a curve that is apart by its solution alone.
+    """
     lines: list[Artist] = []
-    for axis, (y_label, curves) in zip(axes, panels.items(), strict=True):
+    for k, (axis, (y_label, curves)) in enumerate(zip(axes, panels.items(), strict=True)):
         dashes = DASHES[len(axis.lines) // len(curves) % len(DASHES)]
-        for name, (values, own) in curves.items():
-            is_named = is_apart and asked.label is not None
-            label = asked.label if is_named else asked.name_of(name)
-            ours = {"linestyle": dashes, "marker": point_style(t), "label": label}
-            lines += axis.plot(t, values, **(ours | own | asked.properties))
+        for name, (values, color) in curves.items():
+            called = asked.name_of(name) if asked.label is None or not is_apart else asked.label
+            ours = {"linestyle": dashes, "marker": point_style(t), "color": color}
+            ours["label"] = called if k < named else f"_{called}"
+            lines += axis.plot(t, values, **(ours | asked.properties))
         axis.set_ylabel(y_label)
-        if legend is not None:
-            axis.legend(**legend)
         _dress(axis, least_span)
     asked.shade(axes)
+    for axis in axes[: max(named, 1)]:
+        legend_above(axis)
     return lines
 
 
@@ -133,7 +169,8 @@ def _dress(axis: Axes, least_span: float) -> None:
     from matplotlib.ticker import ScalarFormatter
 
     axis.set_xlabel("t (s)")
-    axis.grid(True)
+    axis.label_outer()
+    grid(axis)
     axis.margins(x=0)
     for ticks in (axis.xaxis.get_major_formatter(), axis.yaxis.get_major_formatter()):
         if isinstance(ticks, ScalarFormatter):

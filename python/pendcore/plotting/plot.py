@@ -67,6 +67,8 @@ def plot(
         own = own | {"label": in_legend(text("label", label))}
     draw = _kind(what, own, horizon).draw
     given = whole_names(Solution.plot, Line2D, line_properties)
+    if given and what == "free_bodies":
+        raise TypeError(f"{next(iter(given))}: what = {what!r} has no lines: only arrows and rods")
     if horizon is not None:
         valid_until = solution.valid_until(horizon)
     return draw(
@@ -75,6 +77,7 @@ def plot(
             ax=ax,
             new_figure=new_figure,
             valid_until=valid_until,
+            horizon=horizon,
             properties=given,
             **own,
         )

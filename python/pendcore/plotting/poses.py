@@ -2,28 +2,35 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from itertools import pairwise
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from pendcore import Scene
 from pendcore.messages import Floats, finite_array, silence
-from pendcore.plotting.axes import Request, in_plane
+from pendcore.plotting import sketch
+from pendcore.plotting.axes import Request
 from pendcore.plotting.curve import curve_of, span_of
-from pendcore.plotting.style import FORCES
+from pendcore.plotting.over_time import force_name
+from pendcore.plotting.sketch import Sketch, direction
+from pendcore.plotting.style import theme_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-_POSES = 8
-_SHARE = 0.45
-"""How long the largest arrow is, as a share of the total length."""
+_POSES, _A_ROW = 8, 4
+_LONGEST, _SHORTEST = 0.5, 0.16
+"""The lengths of the longest and of the shortest arrow, as shares of the total length."""
+_WIDTH = 7.2
+"""inches, of figures of poses."""
 
 
 def draw_strip(asked: Request) -> list[Artist]:
-    """Draw the chain at some times, s, from left to right, each with the tip's path until then."""
+    """Draw the chain at some times, s, row by row, each with the tip's path until then."""
     dense = asked.solution.with_dense_output()
     scene, reach = dense.scene, _total_length(dense.scene)
     t, q, _, _ = curve_of(dense)
@@ -31,27 +38,72 @@ def draw_strip(asked: Request) -> list[Artist]:
     poses = scene.positions(at, np.hsplit(dense(at).T, 2)[0])
     path = scene.positions(t, q)[:, -1]
     shown = np.concatenate([poses.reshape(-1, 2), path])
-    step = 1.15 * float(np.ptp(shown[:, 0]) or reach)
-    lowest = float(shown[:, 1].max()) + 0.12 * reach
-    axis = asked.one_axes((min(2.0 * len(at), 16.0), 3.2))
+    low, high = shown.min(axis=0), shown.max(axis=0)
+    # One pose after the other, and one row below the other with room for the times.
+    step = np.maximum(high - low, 0.3 * reach) * [1.2, 1.0] + [0.0, 0.5 * reach]
+    columns = min(len(at), _A_ROW)
+    rows = ceil(len(at) / columns)
+    wide, tall = step * [columns, rows]
+    axis = asked.one_axes((_WIDTH, float(np.clip(_WIDTH * tall / wide, 1.5, 9.0))))
+    colors = theme_of(axis).links
     artists: list[Artist] = []
     before = at[0]
-    how = {"color": "k", "linewidth": 1.6, "marker": "o", "markersize": 3, **asked.properties}
     for k, (time, pose) in enumerate(zip(at, poses, strict=True)):
-        moved = np.array([k * step, 0.0])
+        moved = step * [k % columns, k // columns]
         since = (t - before) * (time - t) >= 0
-        axis.plot(*(path[since] + moved).T, color="b", linewidth=0.8, alpha=0.5, zorder=1)
-        artists += axis.plot(*(pose + moved).T, **how)
-        middle = float(pose[0, 0]) + k * step
-        artists.append(axis.text(middle, lowest, f"{time:.4g} s", ha="center", va="top"))
+        color = colors[(len(pose) - 2) % len(colors)]
+        axis.plot(*(path[since] + moved).T, color=color, linewidth=1.0, alpha=0.6, zorder=1)
+        artists += _draw_chain(axis, pose + moved, asked.properties)
+        below = low[0] + moved[0], high[1] + moved[1] + 0.12 * reach
+        artists.append(axis.text(*below, f"{time:.4g} s", va="top", fontsize="small"))
         before = time
-    in_plane(axis)
-    axis.set_xlabel("x (m), each pose moved to the right")
+    draw_scale(axis, low + step * [0, rows] + [0.0, 0.3 * reach], reach)
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.yaxis.set_inverted(True)
+    axis.set_axis_off()
     return artists
 
 
+def _draw_chain(axis: Axes, pose: Floats, properties: dict[str, Any]) -> list[Artist]:
+    """Draw each link in its colour, with the joints as dots."""
+    theme = theme_of(axis)
+    lines: list[Artist] = []
+    for i, ends in enumerate(pairwise(pose)):
+        ours = {"color": theme.links[i % len(theme.links)], "linewidth": 2.4}
+        how = {**ours, "solid_capstyle": "round", "zorder": 2, **properties}
+        lines += axis.plot(*np.array(ends).T, **how)
+    axis.plot(*pose.T, "o", color=theme.ink, markersize=3, zorder=3)
+    return lines
+
+
+def draw_scale(axis: Axes, at: Floats, reach: float) -> None:
+    """Draw a bar of a round length, and say how long it is."""
+    length = round_length(0.5 * reach)
+    ink = theme_of(axis).quiet
+    axis.plot([at[0], at[0] + length], [at[1], at[1]], color=ink, linewidth=2.0)
+    axis.text(at[0] + 1.15 * length, at[1], f"{length:g} m", color=ink, va="center")
+
+
+def round_length(most: float) -> float:
+    """Return the largest of 1, 2, 5, 10, ... and their parts by ten that is not above ``most``."""
+    power = 10.0 ** floor(log10(most))
+    return float(f"{max(k for k in (1, 2, 5) if k * power <= most * (1 + 1e-12)) * power:.1g}")
+
+
+class _Arrow(NamedTuple):
+    """A force as it is drawn: from where to where, m, its name, and its colour."""
+
+    start: Floats
+    along: Floats
+    text: str
+    color: str
+
+
 def draw_free_bodies(asked: Request) -> list[Artist]:
-    """Draw each link by itself with the forces on it, N, at a time, s."""
+    """Draw each link by itself with the forces on it, N, at a time, s.
+
+    Arrows are as long as forces are large, but never so short that they vanish.
+    """
     at = _times(asked.t, np.array(span_of(asked.solution)[:1]))
     if len(at) > 1:
         raise ValueError(f"t: {len(at)} times: must be one (s): free bodies are of an instant")
@@ -59,47 +111,58 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     q, qd = np.split(asked.solution.with_dense_output()(t), 2)
     pose, centers = scene.positions(t, q), scene.mass_centers(t, q)
     forces = forces_on_links(scene, t, q, qd)
-    reach = _total_length(scene)
-    largest = max(float(np.hypot(*force)) for link in forces for _, _, force in link)
-    scale = _SHARE * reach / max(largest, 1e-300)
-    axis = asked.one_axes((3.2 * len(q) + 1.6, 5.0))
-    artists: list[Artist] = []
-    how: dict[str, Any] = {"color": "k", "linewidth": 3.0, "solid_capstyle": "round", "zorder": 2}
-    for i, arrows in enumerate(forces):
-        moved = np.array([1.2 * i * reach, 0.0])
-        body = pose[i : i + 2] + moved
-        artists += axis.plot(*body.T, **(how | asked.properties))
-        center = centers[i] + moved
-        axis.plot(*center, "o", color="w", markeredgecolor="k", markersize=5, zorder=3)
-        for kind, place, force in arrows:
-            artists.append(_draw_force(axis, FORCES[kind][0], place + moved, force, scale))
-        x, y = body.mean(axis=0)
-        axis.text(x, y, f"  link {i + 1}", va="center", fontsize="small")
-    for kind in dict.fromkeys(kind for arrows in forces for kind, _, _ in arrows):
-        color, name = FORCES[kind]
-        axis.plot([], [], color=color, label=name)
-    in_plane(axis)
-    axis.set_xlabel("x (m), each link moved to the right")
-    axis.set_title(f"t = {t:.4g} s")
-    axis.legend(fontsize="small")
-    return artists
+    largest = max(float(np.hypot(*one.force)) for link in forces for one in link)
+    axis = asked.one_axes((min(3.3 * len(q) + 0.6, 16.0), 3.9))
+    on = Sketch(axis, reach := _total_length(scene))
+    right = 0.0
+    for i, (angle, of_link) in enumerate(zip(q, forces, strict=True)):
+        arrows = [_arrow(on, one, pose[i : i + 2], largest) for one in of_link]
+        ends = [pose[i : i + 2], *(np.array([one.start, one.start + one.along]) for one in arrows)]
+        across = np.concatenate(ends)[:, 0]
+        moved = np.array([right - across.min(), -pose[i, 1]])
+        right += np.ptp(across) + 0.5 * reach
+        _draw_body(on, i, angle, pose[i : i + 2] + moved, centers[i] + moved)
+        for one in arrows:
+            sketch.arrow(on, one.start + moved, one.along, one.text, one.color)
+    axis.set_title(f"t = {t:.4g} s", loc="left")
+    sketch.finish(on)
+    return [*axis.texts]
 
 
-def _draw_force(axis: Axes, color: str, begin: Floats, force: Floats, scale: float) -> Artist:
-    """Draw a force, N, as an arrow of ``scale`` m a newton, with its size."""
-    end: Any = begin + scale * force
-    how = {"arrowstyle": "-|>", "color": color, "linewidth": 1.4}
-    arrow = axis.annotate("", xy=end, xytext=(begin[0], begin[1]), arrowprops=how, zorder=4)
-    axis.plot(*end, alpha=0)  # arrows do not count for the limits of axes
-    newtons = f" {np.hypot(*force):.3g} N"
-    axis.text(end[0], end[1], newtons, color=color, fontsize="small", zorder=5)
-    return arrow
+def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:
+    """Draw a link with its ends, its mass centre, and its number."""
+    sketch.rod(on, *ends)
+    sketch.mass_center(on, center)
+    for end in ends:
+        sketch.pin(on, end)
+    parts = [ends[0] + share * (ends[1] - ends[0]) for share in (0.75, 0.3, 0.65, 0.85)]
+    sketch.number(on, parts, i + 1, direction(angle - np.pi / 2))
 
 
-def forces_on_links(
-    scene: Scene, t: float, q: Floats, qd: Floats
-) -> list[list[tuple[str, Floats, Floats]]]:
-    """Return the forces on each link at one instant: kind, point (2,), m, and force (2,), N.
+def _arrow(on: Sketch, of: Force, ends: Floats, largest: float) -> _Arrow:
+    """Return how a force is drawn; one that would lie on the link arrives from the other side."""
+    size = float(np.hypot(*of.force))
+    length = max(_LONGEST * size / largest, _SHORTEST if size > 1e-9 * largest else 0.0)
+    along = length * on.size * of.force / (size or 1.0)
+    far = max(ends, key=lambda end: float(np.hypot(*(end - of.at))))
+    link = (far - of.at) / (np.hypot(*(far - of.at)) or 1.0)
+    if of.kind == "joint" and along @ link > 0.9 * np.hypot(*along):
+        return _Arrow(of.at - along, along, f"{of.name} = {size:.3g} N", on.theme.force)
+    kinds = {"joint": on.theme.force, "weight": on.theme.weight, "other": on.theme.load}
+    return _Arrow(of.at, along, f"{of.name} = {size:.3g} N", kinds[of.kind])
+
+
+class Force(NamedTuple):
+    """A force on a link: "joint", "weight" or "other", its name, its point, m, and itself, N."""
+
+    kind: str
+    name: str
+    at: Floats
+    force: Floats
+
+
+def forces_on_links(scene: Scene, t: float, q: Floats, qd: Floats) -> list[list[Force]]:
+    """Return the forces on each link at one instant.
 
     The force at the joint where a link begins, minus the next link's, the weight at the mass
     centre (the payload's at the tip), and what drag and wind make up.
@@ -111,15 +174,16 @@ def forces_on_links(
     gravity = np.array([0.0, scene.gravity])
     found = []
     for i, link in enumerate(scene.links):
-        forces = [("joint", pose[i], reactions[i])]
+        forces = [Force("joint", f"${force_name(i, i + 1)}$", pose[i], reactions[i])]
         if i + 1 < n:
-            forces.append(("joint", pose[i + 1], -reactions[i + 1]))
+            name = f"${force_name(i + 2, i + 1)}$"
+            forces.append(Force("joint", name, pose[i + 1], -reactions[i + 1]))
         if link.mass > 0:
-            forces.append(("weight", centers[i], link.mass * gravity))
+            forces.append(Force("weight", f"$m_{{{i + 1}}} g$", centers[i], link.mass * gravity))
         if i + 1 == n and payload > 0:
-            forces.append(("weight", pose[n], payload * gravity))
-        if np.hypot(*drags[i]) > 1e-6 * max(np.hypot(*force) for _, _, force in forces):
-            forces.append(("other", centers[i], drags[i]))
+            forces.append(Force("weight", "$m_p g$", pose[n], payload * gravity))
+        if np.hypot(*drags[i]) > 1e-6 * max(np.hypot(*one.force) for one in forces):
+            forces.append(Force("other", f"$D_{{{i + 1}}}$", centers[i], drags[i]))
         found.append(forces)
     return found
 

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import Floats, number, positive, text
-from pendcore.plotting.axes import NewFigure, figure_of_pyplot, in_plane
+from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot, grid
+from pendcore.plotting.curve import curve_of
 from pendcore.plotting.frames import Moves, frame_times, moves_of
-from pendcore.plotting.over_time import draw_energies
-from pendcore.plotting.style import CHAINS, LOST, REACTION, in_legend
+from pendcore.plotting.over_time import draw_angles, draw_energies, draw_force_sizes
+from pendcore.plotting.poses import draw_scale
+from pendcore.plotting.style import Theme, applied, in_legend, keep_style, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -22,8 +25,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_ARROW = 0.4
-"""How long the largest arrow is, as a share of the total length."""
+HEIGHT = 4.5
+"""inches, of a film in 16:9, whatever its pixels: letters take the same share of every film."""
+LETTERS, CLOCK = 14.0, 22.0
+"""Points: a film 320 pixels wide has them 8 and 12 pixels high."""
+_LETTERING = {"font.size": LETTERS, "legend.handlelength": 0.7, "legend.columnspacing": 0.8}
+_LONGEST, _SHORTEST, _TYPICAL = 0.4, 0.14, 95
+"""The lengths of arrows as shares of the total length; the longest from this percentile on."""
+_MOST_PANELS = 3
+_TAIL = 24
+"""The trace fades in so many parts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,15 +68,14 @@ def animate(
     from matplotlib.animation import FuncAnimation
 
     known = names_of(solutions, names)
-    width = 6.4 * (len(solutions) if choices.beside else 1)
-    size = min(width, 16.0), 6.4 if choices.energy else 5.4
+    size = HEIGHT * 16 / 9, HEIGHT
     stage = Stage(solutions, partial(figure_of_pyplot, figsize=size), choices, known)
     frames, interval = len(stage.times), 1000.0 / choices.fps
     return FuncAnimation(stage.figure, stage.show, frames, interval=interval, blit=True)
 
 
 def names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tuple[str, ...]:
-    """Return what the legend calls the runs; nothing for one that is alone."""
+    """Return what the runs are called beside their tips; nothing for one that is alone."""
     for one in runs:
         if not isinstance(one, Solution):
             raise TypeError(f"{one!r}: must be a Solution, to be shown beside this one")
@@ -100,119 +110,279 @@ class Stage:
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
         last_right = [_last_right_frame(one, self.times, choices.horizon) for one in solutions]
-        self.figure = new_figure()
-        scenes, strip = _layout(self.figure, len(solutions), choices)
-        largest = max(float(np.hypot(*np.moveaxis(one.reactions, -1, 0)).max()) for one in moves)
-        length = max(one.total_length for one in moves)
-        scale = _ARROW * length / (largest or 1.0) if choices.reactions else 0.0
-        for axis in scenes:
-            _frame_scene(axis, moves, scale)
-        self._players: list[_Player] = []
-        for k, (one, until) in enumerate(zip(moves, last_right, strict=True)):
-            axis, color = scenes[k % len(scenes)], CHAINS[k % len(CHAINS)]
-            self._players.append(_Player(axis, one, color, choices, until, scale))
-            if names[k]:
-                axis.plot([], [], color=color, linewidth=3, label=in_legend(names[k]))
-        for axis in scenes:
-            if axis.get_legend_handles_labels()[0]:
-                axis.legend(loc="upper right", fontsize="small")
-        corner: dict[str, Any] = {"transform": scenes[0].transAxes, "ha": "left", "va": "top"}
-        self._clock = scenes[0].text(0.02, 0.98, "", family="monospace", **corner)
+        with applied(_LETTERING):
+            self.figure = new_figure()
+            scenes, panels = _layout(self.figure, dense, choices)
+            self._curves = _Curves(dense, panels, choices)
+            arrows = [_arrows(one, moves) if choices.reactions else None for one in moves]
+            for axis in scenes:
+                _frame_scene(axis, moves, [one for one in arrows if one is not None])
+            self._players = []
+            for k, (one, until) in enumerate(zip(moves, last_right, strict=True)):
+                axis, count = scenes[k % len(scenes)], one.places.shape[1] - 1
+                colors = _colors(theme_of(axis), k, count, is_alone=len(moves) == 1)
+                self._players.append(_Player(axis, one, colors, choices, until, arrows[k]))
+                self._players[-1].name(names[k])
+            how: dict[str, Any] = {"transform": scenes[0].transAxes, "va": "top", "fontsize": CLOCK}
+            self._clock = scenes[0].text(0.03, 0.97, "", **how)
+            if choices.horizon is not None:
+                _say_horizon(dense[0], choices.horizon, scenes[0], panels)
         self._pace = "" if choices.speed == 1.0 else f"  (x{choices.speed:g})"
-        self._now: list[Any] = []
-        if strip is not None:
-            draw_energies(dense[0], strip)
-            self._now = [strip.axvline(dense[0].t_span[0], color="0.2", linewidth=1.0)]
         for artist in self.moving():
             artist.set_animated(True)
 
     def moving(self) -> list[Artist]:
         """Return what has to be drawn anew in each frame, the lowest first."""
         moving = [artist for player in self._players for artist in player.artists]
-        return [*moving, self._clock, *self._now]
+        return [*moving, self._clock, *self._curves.artists]
 
     def show(self, k: int) -> list[Artist]:
         """Move everything to where it is in frame k, and return it."""
+        taken: list[Floats] = []
         for player in self._players:
-            player.show(k)
+            player.show(k, taken)
+        self._curves.show(self.times[k])
         self._clock.set_text(f"t = {self.times[k]:.2f} s{self._pace}")
-        for line in self._now:
-            line.set_xdata([self.times[k], self.times[k]])
         return self.moving()
 
 
 class _Player:
-    """One chain: its links, the trace of its tip, the forces at its joints."""
+    """One chain: its links, the trace of its tip, the forces at its joints, its name."""
 
     def __init__(
         self,
         axis: Axes,
         moves: Moves,
-        color: str,
+        colors: Sequence[str],
         choices: Choices,
         last_right: int,
-        scale: float,
+        arrows: Floats | None,
     ) -> None:
-        self._color, self._moves = color, moves
-        self._last_right, self._scale = last_right, scale
+        from matplotlib.collections import LineCollection
+
+        self._axis, self._colors, self._moves = axis, colors, moves
+        self._theme, self._last_right, self._forces = theme_of(axis), last_right, arrows
         frames = (choices.trace or 0.0) * choices.fps / choices.speed
         self._behind = round(min(frames, len(moves.places)))
-        (self._trace,) = axis.plot([], [], "-", color=color, linewidth=1.2, alpha=0.55, zorder=2)
-        (self._chain,) = axis.plot(
-            [], [], "o-", color=color, linewidth=4, markersize=7, solid_capstyle="round", zorder=3
-        )
-        self.artists: list[Artist] = [self._trace, self._chain]
-        self._arrows: Any = None
-        if choices.reactions:
-            n = moves.reactions.shape[1]
-            self._arrows = axis.quiver(
-                *np.zeros((4, n)), color=REACTION, angles="xy", scale_units="xy", scale=1.0,
-                width=0.004, zorder=4,
+        alpha = np.linspace(0.05, 0.8, _TAIL)
+        self._trace = LineCollection([], linewidths=1.8, alpha=alpha, capstyle="butt", zorder=2)
+        axis.add_collection(self._trace, autolim=False)
+        how: dict[str, Any] = {"linewidth": 6.0, "solid_capstyle": "round", "zorder": 3}
+        self._links = [axis.plot([], [], color=color, **how)[0] for color in colors]
+        ink = self._theme.ink
+        (self._joints,) = axis.plot([], [], "o", color=ink, markersize=6.5, zorder=4)
+        self.artists: list[Artist] = [self._trace, *self._links, self._joints]
+        self._name: Any = None
+        if arrows is not None:
+            n, color = arrows.shape[1], self._theme.force
+            self._arrows: Any = axis.quiver(
+                *np.zeros((4, n)), color=color, angles="xy", scale_units="xy", scale=1.0,
+                width=0.008, headwidth=3.6, headlength=4.0, headaxislength=4.0, zorder=5,
             )  # fmt: skip
-            how: dict[str, Any] = {"color": REACTION, "fontsize": "small", "zorder": 5}
-            self._sizes = [axis.text(0.0, 0.0, "", **how) for _ in range(n)]
+            self._sizes = [self._text(color, ha="center", va="center") for _ in range(n)]
             self.artists += [self._arrows, *self._sizes]
 
-    def show(self, k: int) -> None:
-        places = self._moves.places[k]
-        color = self._color if k <= self._last_right else LOST
-        self._chain.set_data(*places.T)
-        self._chain.set_color(color)
+    def name(self, name: str) -> None:
+        """Write a name beside the tip."""
+        if name:
+            self._name = self._text(self._colors[-1], va="center")
+            self._name.set_text(in_legend(name))
+            self.artists.append(self._name)
+
+    def _text(self, color: str, **how: Any) -> Any:
+        """Return a text that can be read in front of anything."""
+        from matplotlib.patheffects import withStroke
+
+        halo = withStroke(linewidth=4.0, foreground=self._theme.ground)
+        return self._axis.text(0.0, 0.0, "", color=color, path_effects=[halo], zorder=6, **how)
+
+    def show(self, k: int, taken: list[Floats]) -> None:
+        """Move everything to frame k; names keep clear of those of others, ``taken``."""
+        places, is_right = self._moves.places[k], k <= self._last_right
+        colors = self._colors if is_right else [self._theme.lost] * len(self._links)
+        for i, (link, color) in enumerate(zip(self._links, colors, strict=True)):
+            link.set_data(*places[i : i + 2].T)
+            link.set_color(color)
+        self._joints.set_data(*places.T)
         if self._behind > 0:
             parts = self._moves.parts
-            first = parts * max(k - self._behind, 0)
-            self._trace.set_data(*self._moves.path[first : parts * k + 1].T)
-            self._trace.set_color(color)
-        if self._arrows is not None:
-            newtons = self._moves.reactions[k]
-            force = self._scale * newtons
-            self._arrows.set_offsets(places[:-1])
-            self._arrows.set_UVC(*force.T)
-            for at, size, one in zip(places[:-1] + force, self._sizes, newtons, strict=True):
-                size.set_position(at)
-                size.set_text(f" {np.hypot(*one):.3g} N")
+            tail = self._moves.path[parts * max(k - self._behind, 0) : parts * k + 1]
+            cuts = np.linspace(0, len(tail) - 1, _TAIL + 1).astype(int)
+            self._trace.set_segments([tail[i : j + 1] for i, j in pairwise(cuts)])
+            self._trace.set_color(colors[-1])
+        if self._forces is not None:
+            self._show_forces(places, self._forces[k], self._moves.reactions[k])
+        if self._name is not None:
+            self._show_name(places, taken)
+
+    def _show_forces(self, places: Floats, arrows: Floats, forces: Floats) -> None:
+        """Draw the arrows, m, and write the forces, N, at their heads, off the rods."""
+        newtons = np.hypot(*forces.T)
+        self._arrows.set_offsets(places[:-1])
+        self._arrows.set_UVC(*arrows.T)
+        room = 0.13 * self._moves.total_length
+        for joint, along, size, force in zip(places, arrows, self._sizes, newtons, strict=False):
+            length = np.hypot(*along) or 1.0
+            ahead, aside = room * along / length, room * along[::-1] / length * [1.0, -1.0]
+            sides = [1.4 * ahead, ahead + 1.4 * aside, ahead - 1.4 * aside]
+            spots = joint + along + np.array(sides)
+            clear = [_distance(spot, places) for spot in spots]
+            best = 0 if clear[0] > room else int(np.argmax(clear))
+            size.set_position(spots[best])
+            size.set_text(f"{force:.3g} N" if np.any(along) else "")
+
+    def _show_name(self, places: Floats, taken: list[Floats]) -> None:
+        """Write the name beyond the tip, as the last link points, and clear of other names."""
+        left, right = self._axis.get_xlim()
+        low, high = sorted(self._axis.get_ylim())
+        line = LETTERS / 72 / HEIGHT * 1.2 * (high - low)
+        wide = 0.5 * line * len(self._name.get_text())
+        tip, along = places[-1], places[-1] - places[-2]
+        side = 1.0 if along[0] >= 0 else -1.0
+        if not left < tip[0] + side * (wide + line) < right:
+            side = -side
+        at = tip + np.array([0.5 * side * line, 0.0])
+        while any((np.abs(at - other) < [wide, 0.99 * line]).all() for other in taken):
+            at[1] += line if along[1] >= 0 else -line
+        taken.append(at)
+        self._name.set_position(at)
+        self._name.set_ha("left" if side > 0 else "right")
 
 
-def _layout(figure: Figure, count: int, choices: Choices) -> tuple[list[Axes], Axes | None]:
-    columns = count if choices.beside else 1
-    figure.set_layout_engine("constrained")
-    rows = 2 if choices.energy else 1
-    grid = figure.add_gridspec(rows, columns, height_ratios=[4, 1][:rows])
-    scenes = [figure.add_subplot(grid[0, k]) for k in range(columns)]
-    return scenes, figure.add_subplot(grid[1, :]) if choices.energy else None
+class _Curves:
+    """The curves beside or below the chain, which grow with time."""
+
+    def __init__(self, runs: Sequence[Solution], axes: Sequence[Axes], choices: Choices) -> None:
+        kinds = _panels(runs, choices) if len(axes) else {}
+        begin = 0
+        for kind, rows in kinds.items():
+            own, begin = list(axes[begin : begin + rows]), begin + rows
+            asked = Request(solution=runs[0], ax=own)
+            if kind == "energy":
+                draw_energies(asked)
+            elif kind == "reactions":
+                draw_force_sizes(asked, _TYPICAL)
+            elif len(runs) == 1:
+                draw_angles(asked)
+            else:
+                _draw_last_angles(runs, own[0])
+        self._lines = [line for axis in axes for line in axis.lines]
+        self._data = [np.array(line.get_data()) for line in self._lines]
+        self._direction = 1.0 if runs[0].t_reached >= runs[0].t_span[0] else -1.0
+        ink = [theme_of(axis).ink for axis in axes]
+        self._now = [axis.axvline(color=ink[0], linewidth=1.0) for axis in axes]
+        for axis, line in zip(axes, self._now, strict=True):
+            line.set_xdata([axis.get_xlim()[0]] * 2)
+        self.artists: list[Artist] = [*self._lines, *self._now]
+
+    def show(self, time: float) -> None:
+        """Let the curves end at a time, s."""
+        for line, (t, values) in zip(self._lines, self._data, strict=True):
+            until = int(np.searchsorted(self._direction * t, self._direction * time, "right"))
+            line.set_data(t[:until], values[:until])
+        for line in self._now:
+            line.set_xdata([time, time])
 
 
-def _frame_scene(axis: Axes, moves: Sequence[Moves], scale: float) -> None:
-    """Fix the limits so that nothing ever leaves the picture; arrows have `scale` m a newton."""
-    ends = [one.places[:, :-1] + scale * one.reactions for one in moves]
+def _panels(runs: Sequence[Solution], choices: Choices) -> dict[str, int]:
+    """Return which curves a film shows, and on how many axes."""
+    kinds = {"energy": 1} if choices.energy else {}
+    kinds |= {"reactions": 1} if choices.reactions and len(runs) == 1 else {}
+    n = len(runs[0].scene.links)
+    return kinds or {"angles": n if len(runs) == 1 and n <= _MOST_PANELS else 1}
+
+
+def _draw_last_angles(runs: Sequence[Solution], axis: Axes) -> None:
+    """Draw the angle of the last link of each run, deg."""
+    theme = theme_of(axis)
+    for k, one in enumerate(runs):
+        curve = curve_of(one)
+        axis.plot(curve.t, np.rad2deg(curve.q[:, -1]), color=theme.runs[k % len(theme.runs)])
+    axis.set(xlabel="t (s)", ylabel=f"$q_{{{len(runs[0].scene.links)}}}$ (deg)")
+    axis.margins(x=0)
+    grid(axis)
+
+
+def _colors(theme: Theme, k: int, links: int, *, is_alone: bool) -> list[str]:
+    """Return the colours of the links of run k: their own if it is alone, else that of the run."""
+    if is_alone:
+        return [theme.links[i % len(theme.links)] for i in range(links)]
+    return [theme.runs[k % len(theme.runs)]] * links
+
+
+def _arrows(moves: Moves, runs: Sequence[Moves]) -> Floats:
+    """Return the arrows of the forces, m, (k, n, 2): neither so long nor so short as they are."""
+    every = np.concatenate([np.hypot(*np.moveaxis(x.reactions, -1, 0)).ravel() for x in runs])
+    typical = float(np.percentile(every, _TYPICAL)) or 1.0
+    sizes = np.hypot(*np.moveaxis(moves.reactions, -1, 0))[..., np.newaxis]
+    longest, shortest = np.array([_LONGEST, _SHORTEST]) * max(x.total_length for x in runs)
+    lengths = np.clip(longest * sizes / typical, shortest, longest) * (sizes > 1e-6 * typical)
+    arrows: Floats = moves.reactions / np.maximum(sizes, 1e-300) * lengths
+    return arrows
+
+
+def _distance(spot: Floats, places: Floats) -> float:
+    """Return how far a spot is from the nearest of the links between places, m."""
+    begin, along = places[:-1], np.diff(places, axis=0)
+    squares = np.maximum((along**2).sum(axis=1), 1e-300)
+    share = np.clip(((spot - begin) * along).sum(axis=1) / squares, 0.0, 1.0)
+    return float(np.hypot(*(begin + share[:, np.newaxis] * along - spot).T).min())
+
+
+def _layout(
+    figure: Figure, runs: Sequence[Solution], choices: Choices
+) -> tuple[list[Axes], list[Axes]]:
+    """Return the axes of the chains, which fill their part of the figure, and those of curves.
+
+    In a wide frame the curves stand beside a square stage. In another they stand below, where they
+    are asked for; so they do where chains are side by side.
+    """
+    width, height = figure.get_size_inches()
+    is_wide = width > 1.5 * height and not choices.beside
+    rows = sum(_panels(runs, choices).values())
+    stage: Any = figure
+    panels: list[Axes] = []
+    if is_wide or choices.energy or choices.reactions:
+        figure.set_layout_engine("constrained")
+        parts: Any
+        if is_wide:
+            parts = figure.subfigures(1, 2, width_ratios=[height, width - height])
+        else:
+            parts = figure.subfigures(2, 1, height_ratios=[2, rows])
+        stage, beside = parts
+        panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
+        for axis in panels:
+            keep_style(axis)
+    columns = len(runs) if choices.beside else 1
+    return [stage.add_axes((k / columns, 0.0, 1 / columns, 1.0)) for k in range(columns)], panels
+
+
+def _frame_scene(axis: Axes, moves: Sequence[Moves], arrows: Sequence[Floats]) -> None:
+    """Fix the limits so that nothing ever leaves the picture, and draw pivots and a scale."""
+    ends = [one.places[:, :-1] + along for one, along in zip(moves, arrows, strict=False)]
     places = np.concatenate([x.reshape(-1, 2) for x in (*(one.places for one in moves), *ends)])
     low, high = places.min(axis=0), places.max(axis=0)
-    margin = 0.06 * max(float((high - low).max()), 0.2 * moves[0].total_length)
-    corners = np.array([low - margin, high + margin])
-    axis.plot(*corners.T, alpha=0.0)
-    in_plane(axis)
+    reach = moves[0].total_length
+    margin = 0.12 * max(float((high - low).max()), 0.2 * reach)
+    axis.plot(*np.array([low - margin, high + margin]).T, alpha=0.0)
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.margins(0.0)
+    axis.invert_yaxis()
+    axis.set_axis_off()
+    theme = theme_of(axis)
     pivots = np.unique(np.concatenate([one.places[:1, 0] for one in moves]), axis=0)
-    axis.plot(*pivots.T, "^", color="0.5", markersize=9, zorder=1, linestyle="")
+    axis.plot(*pivots.T, "^", color=theme.quiet, markersize=12, zorder=1, linestyle="")
+    draw_scale(axis, np.array([low[0] - 0.7 * margin, high[1] + 0.7 * margin]), reach)
+
+
+def _say_horizon(run: Solution, limit: float, stage: Axes, panels: Sequence[Axes]) -> None:
+    """Write below the clock until when a run is right, and shade the curves after that."""
+    until = run.valid_until(limit)
+    Request(solution=run, horizon=limit, valid_until=until).shade(panels)
+    if until != run.t_reached:
+        said = f"right to {limit:g} rad until {until:.4g} s"
+        color = theme_of(stage).quiet
+        stage.text(0.03, 0.87, said, transform=stage.transAxes, va="top", color=color)
 
 
 def _last_right_frame(solution: Solution, times: Floats, horizon: float | None) -> int:

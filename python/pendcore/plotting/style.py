@@ -1,46 +1,191 @@
-"""How everything drawn looks: colours, dashes, and texts of the user's."""
+"""The house style of everything drawn: its colours, letters and lines, each of them written here.
+
+Figures and films take it as matplotlib's settings, pages as variables of CSS. The page on style in
+docs shows it; tests hold the colours to what is said of them.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-COLORS = ("r", "b", "g", "m", "c", "k")
-"""The colours of links and of curves; red and blue are the book's."""
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Theme(NamedTuple):
+    """The colours on one ground.
+
+    The six with names of colours can be told apart on ``ground``, also by eyes that lack one kind
+    of cone; the first three also in grey print. Texts are ``ink``, or ``quiet`` if they matter
+    less; what cannot be trusted any more is ``lost``.
+    """
+
+    ground: str
+    panel: str
+    ink: str
+    quiet: str
+    line: str
+    lost: str
+    red: str
+    blue: str
+    green: str
+    purple: str
+    ochre: str
+    teal: str
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The colours of links and of their curves; red and blue are the book's."""
+        return self.red, self.blue, self.green, self.purple, self.ochre, self.teal
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The colours of what makes up a sum, such as energies; the sum itself is ink."""
+        return self.ochre, self.teal, self.purple, self.green, self.blue, self.red
+
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The colours of one run after another where a run has one colour."""
+        return self.ink, self.ochre, self.teal, self.purple, self.green, self.red
+
+    @property
+    def force(self) -> str:
+        """The colour of forces at joints."""
+        return self.purple
+
+    @property
+    def weight(self) -> str:
+        """The colour of weights."""
+        return self.quiet
+
+    @property
+    def couple(self) -> str:
+        """The colour of couples."""
+        return self.teal
+
+    @property
+    def angle(self) -> str:
+        """The colour of angles that are measured in a drawing."""
+        return self.blue
+
+    @property
+    def load(self) -> str:
+        """The colour of the other forces on a link, such as drag."""
+        return self.red
+
+
+LIGHT = Theme(
+    ground="#ffffff", panel="#f4f6f8", ink="#1b1f24", quiet="#59626d", line="#d5dae0",
+    lost="#b4bbc3", red="#c93f32", blue="#1b4583", green="#12a063", purple="#7d35b8",
+    ochre="#b07d00", teal="#0f6f73",
+)  # fmt: skip
+DARK = Theme(
+    ground="#14171a", panel="#1c2024", ink="#e8eaed", quiet="#a3acb6", line="#363d44",
+    lost="#59616a", red="#f4604f", blue="#a3c2fa", green="#8fe9a6", purple="#b380ea",
+    ochre="#f2cd6a", teal="#43b0aa",
+)  # fmt: skip
+
 DASHES = ("-", "--", "-.", ":")
 """For one solution after another on the same axes."""
-SUM: dict[str, Any] = {"color": "0.4", "linewidth": 1.0}
-"""How a curve looks that is made of those beside it."""
-OUTSIDE: dict[str, Any] = {
-    "loc": "center left",
-    "bbox_to_anchor": (1.0, 0.5),
-    "fontsize": "small",
-    "frameon": False,
-}
-"""Where the legend of many curves is."""
-SHADE: dict[str, Any] = {
-    "facecolor": "0.85",
-    "edgecolor": "0.45",
-    "hatch": "//",
-    "linewidth": 0,
-    "zorder": 0,
-}
-"""What lies over the times past the horizon."""
-PALE: dict[str, Any] = {"color": "0.75", "linewidth": 0.8, "zorder": 1}
-"""How a curve in a plane looks past the horizon."""
-FORCES = {
-    "joint": ("r", "force at a joint"),
-    "weight": ("0.35", "weight"),
-    "other": ("g", "other forces on the link"),
-}
-"""The colour and the name of each kind of force on a free body."""
-UNRESOLVED, RESOLVED = "0.75", "tab:green"
-"""The colours of what a map does not resolve, and of what it does."""
-CHAINS = ("0.1", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:brown")
-"""The colours of one run after another in a film."""
-LOST = "0.72"
-"""The colour of a run in a film past the time until which it can be trusted."""
-REACTION = "tab:orange"
-"""The colour of the forces in a film."""
+SIZES = {"small": 0.85, "text": 1.0, "title": 1.15, "headline": 1.5}
+"""The sizes of letters, in those of the text."""
+POINTS = 10.0
+"""The size of the text in figures."""
+
+
+def sheet(theme: Theme = LIGHT) -> dict[str, Any]:
+    """Return matplotlib's settings, for ``matplotlib.pyplot.style.use``."""
+    from cycler import cycler
+
+    ticks = {"color": theme.line, "labelcolor": theme.quiet, "labelsize": "small"}
+    return {
+        "figure.facecolor": theme.ground,
+        "axes.facecolor": theme.ground,
+        "savefig.facecolor": theme.ground,
+        "text.color": theme.ink,
+        "axes.labelcolor": theme.ink,
+        "axes.edgecolor": theme.quiet,
+        "axes.prop_cycle": cycler(color=theme.links),
+        "font.size": POINTS,
+        "axes.titlesize": "medium",
+        "axes.titlelocation": "left",
+        "legend.fontsize": "small",
+        "legend.frameon": False,
+        "legend.handlelength": 1.4,
+        "legend.columnspacing": 1.4,
+        "legend.handletextpad": 0.5,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.axisbelow": True,
+        "grid.color": theme.line,
+        "grid.linewidth": 0.6,
+        "lines.solid_capstyle": "round",
+        "lines.solid_joinstyle": "round",
+        "image.cmap": "cividis",
+        **{f"{axis}tick.{name}": value for axis in "xy" for name, value in ticks.items()},
+    }
+
+
+@contextmanager
+def applied(others: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Make figures in the house's style, with some settings changed.
+
+    What the user has set in matplotlib otherwise stays.
+    """
+    import matplotlib as mpl
+
+    set_now: Any = mpl.rcParams  # matplotlib's types want each name as a literal
+    usual: Any = mpl.rcParamsDefault
+    asked: Any = {**sheet(), **(others or {})}
+    with mpl.rc_context({name: x for name, x in asked.items() if set_now[name] == usual[name]}):
+        yield
+
+
+def keep_style(axes: Axes) -> None:
+    """Fix the style of ticks, which matplotlib makes when it draws, by what is set then.
+
+    They are at multiples of 1, 2 and 5: those of 2.5 take more room than constrained layout knows.
+    """
+    import matplotlib as mpl
+
+    of: Any = mpl.rcParams
+    for name in ("x", "y"):
+        own: Any = {key: of[f"{name}tick.{key}"] for key in ("color", "labelcolor", "labelsize")}
+        getattr(axes, f"{name}axis").set_tick_params(which="both", **own)
+    axes.locator_params(steps=[1, 2, 5, 10])
+
+
+def theme_of(axes: Axes) -> Theme:
+    """Return the colours that can be seen on the ground of these axes."""
+    from matplotlib.colors import to_rgb
+
+    return LIGHT if sum(to_rgb(axes.get_facecolor())) > 1.5 else DARK
+
+
+def css_variables(dark: Theme | None = DARK) -> str:
+    """Return the style as variables of CSS; without a dark theme it stays light for every reader.
+
+    With one, it follows the reader's system.
+    """
+    sizes = [f"  --size-{name}: {size}rem;" for name, size in SIZES.items()]
+    scheme = "light" if dark is None else "light dark"
+    told = _rule(":root", [f"  color-scheme: {scheme};", *sizes, *_variables(LIGHT)])
+    if dark is not None:
+        told += f"@media (prefers-color-scheme: dark) {{\n{_rule(':root', _variables(dark))}}}\n"
+    return told
+
+
+def _rule(selector: str, lines: list[str]) -> str:
+    return "\n".join([f"{selector} {{", *lines, "}", ""])
+
+
+def _variables(theme: Theme) -> list[str]:
+    links = {f"link-{k}": color for k, color in enumerate(theme.links, 1)}
+    parts = {f"part-{k}": color for k, color in enumerate(theme.parts, 1)}
+    named = theme._asdict() | links | parts | {"force": theme.force}
+    return [f"  --{name}: {color};" for name, color in named.items()]
 
 
 def as_drawn(text: str) -> str:

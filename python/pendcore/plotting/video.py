@@ -18,14 +18,13 @@ import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import Progress, reporting, warn, whole_file, whole_number
-from pendcore.plotting.stage import Choices, Stage, names_of
+from pendcore.plotting.stage import HEIGHT, Choices, Stage, names_of
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
 """The size of a film in pixels, unless another is asked for."""
-_DPI = {".mp4": 150.0, ".gif": 60.0}
 _SAMPLES = 8
 """The number of frames of which a GIF takes its colours."""
 _MOST_GIF_RATE, _MOST_GIF_FRAMES = 50.0, 4000
@@ -63,7 +62,7 @@ def to_video(
             "show shorter frames too slowly"
         )
     width, height = _even_size(size, SIZES[kind])
-    dpi = _DPI[kind] * width / SIZES[kind][0]
+    dpi = min(height, 9 / 16 * width) / HEIGHT
     new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
     stage = Stage(solutions, new_figure, choices, known)
     canvas = FigureCanvasAgg(stage.figure)

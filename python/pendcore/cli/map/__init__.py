@@ -7,6 +7,7 @@ import re
 import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +33,7 @@ where names are those of parameters (scene.parameters() lists them) or of the st
 q0_deg[1], qd0[2]. With "first_event" the first [[event]] of the case counts.
 
 what is written into the folder:
-  map.png       the map; beside it, which pixels a second, independent run of each confirms
+  map.png       the map; pixels that a second, independent run does not confirm are red
   map.npz       x, y, values, resolved, computed: arrays of NumPy
   summary.txt   what was run, and how many pixels are resolved
 
@@ -106,7 +107,7 @@ def execute(args: argparse.Namespace) -> int:
                 resolved=pixels.resolved, computed=pixels.computed, case=case.to_toml(),
             )  # fmt: skip
         with files.one("map.png") as path:
-            _save_figure(table, reducer, pixels, args, path)
+            _save_figure(case, table, reducer, pixels, args, path)
         print(files.outcome(), file=sys.stderr)
         print(complaint or told, end="\n" * bool(complaint), file=sys.stderr if complaint else None)
         files.refuse_if_none()
@@ -253,17 +254,39 @@ def _summary(case: Case, table: MapTable, pixels: Pixels, args: argparse.Namespa
 
 
 def _save_figure(
-    table: MapTable, reducer: Reducer | None, pixels: Pixels, args: argparse.Namespace, path: Path
+    case: Case,
+    table: MapTable,
+    reducer: Reducer | None,
+    pixels: Pixels,
+    args: argparse.Namespace,
+    path: Path,
 ) -> None:
     from matplotlib.figure import Figure
 
     unit = reducer.unit if reducer else "rad" if table.show.startswith("q[") else "rad/s"
     is_log = bool(reducer and reducer.is_log_if_wide) and is_wide(pixels.values)
-    shown = Shown(f"{table.show.replace('_', ' ')} ({unit})", pixels.values, is_log)
-    axes = new_axes(1 if args.no_trust else 2, Figure)
+    label = f"{table.show.replace('_', ' ')} ({unit})"
+    shown = Shown(label, pixels.values, _blanks(case, table, reducer, pixels.values), is_log)
+    (axes,) = new_axes((6.4, 5.2), new_figure=Figure)
     mask = None if args.no_trust else pixels.resolved
     draw_map(axes, _axis(table.x), _axis(table.y), shown, mask, {})
-    axes[0].figure.savefig(path, dpi=150)
+    figure: Any = axes.figure
+    figure.savefig(path, dpi=150)
+
+
+def _blanks(
+    case: Case, table: MapTable, reducer: Reducer | None, values: Floats
+) -> dict[str, Mask]:
+    """Return the pixels without a value, by why they have none."""
+    blank = ~np.isfinite(values)
+    if not isinstance(reducer, FirstEvent):
+        return {"no value": blank}
+    i, k = np.nonzero(blank)
+    q0, qd0, vary = _starts(case, table, table.x.values[i], table.y.values[k])
+    forbidden = np.zeros_like(blank)
+    if not vary:
+        forbidden[i, k] = is_forbidden(case.scene, q0, qd0, reducer.event)
+    return {"did not happen": blank & ~forbidden, "the energy forbids it": forbidden}
 
 
 def _axis(axis: MapAxis) -> Axis:

@@ -16,7 +16,7 @@ from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Document, Reader
 from pendcore.derive.report import conversion, motion
 from pendcore.derive.report.contents import report, worksheet
-from pendcore.derive.report.drawing import save
+from pendcore.derive.report.pictures import save
 from pendcore.messages import Progress, reporting, warn, whole_file
 
 

@@ -15,7 +15,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from pendcore.derive.document import Document, Reader
-from pendcore.derive.report.drawing import save
+from pendcore.derive.report.pictures import save
+from pendcore.plotting import css_variables
 
 ENGINES = ("xelatex", "lualatex", "pdflatex")
 """LaTeX engines, in the order in which they are tried."""
@@ -71,7 +72,7 @@ def markdown(document: Document, path: Path) -> None:
 
 def page(document: Document, path: Path) -> None:
     """Write a document as one page of HTML; raise a RuntimeError if pandoc fails."""
-    style = f"<style>\n{STYLE.read_text('utf-8')}</style>\n"
+    style = f"<style>\n{css_variables(dark=None)}{STYLE.read_text('utf-8')}</style>\n"
     with TemporaryDirectory() as place:
         made = _pandoc(document, Reader.HTML, Path(place), style, "--to=html5", "--mathml")
         text = made.read_text("utf-8")

@@ -12,9 +12,10 @@ from matplotlib.ticker import AutoMinorLocator
 from pendcore import AccuracyError, Case, Solution
 from pendcore.derive.derivation import Derivation
 from pendcore.derive.document import Drawing, Paragraph, Table
-from pendcore.derive.report.drawing import lettering
+from pendcore.derive.report.pictures import lettering
 from pendcore.derive.report.quantities import Scales, number, quantity
 from pendcore.messages import Floats
+from pendcore.plotting import LIGHT, grid, legend_above, new_axes
 
 POINTS = 1201
 """The number of times at which curves are drawn."""
@@ -178,8 +179,6 @@ def angles(solution: Solution) -> Drawing:
     """Draw the textbook's figure, the angles over time."""
     figure, axes = _sheets(solution.q.shape[1])
     solution.plot(ax=axes)
-    for axis in axes[:-1]:
-        axis.set_xlabel("")
     return Drawing("angles", OF_LINKS, figure)
 
 
@@ -192,12 +191,12 @@ def empty_axes(solution: Solution) -> Drawing:
     figure, axes = _sheets(solution.q.shape[1])
     for i, axis in enumerate(axes, start=1):
         low, high, step = whole_ticks(np.degrees(solution.q[:, i - 1]))
-        axis.set(xlim=span, ylim=(low, high), ylabel=f"q{i} (deg)")
+        axis.set(xlim=span, ylim=(low, high), ylabel=f"$q_{{{i}}}$ (deg)")
         axis.set_yticks(np.arange(low, high + 1.0, step))
         axis.set_yticks(np.arange(low, high + 1.0, step / 3.0), minor=True)
         axis.xaxis.set_minor_locator(AutoMinorLocator(5))
-        axis.grid(True, which="major", color="0.6", linewidth=0.6)
-        axis.grid(True, which="minor", color="0.85", linewidth=0.5)
+        axis.grid(True, which="major", color=LIGHT.lost, linewidth=0.6)
+        axis.grid(True, which="minor", color=LIGHT.line, linewidth=0.5)
     return Drawing("axes", OF_LINKS, figure)
 
 
@@ -239,21 +238,21 @@ def energies(solution: Solution) -> Drawing:
 
 def _sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
     """Return a figure with axes one below the other."""
-    figure = Figure(figsize=(6.6, max(3.0, height * rows)), layout="constrained")
-    axes = list(figure.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
+    axes = new_axes((6.6, max(3.0, height * rows)), rows, new_figure=Figure)
     axes[-1].set_xlabel("t (s)")
+    figure: Any = axes[0].figure
     return figure, axes
 
 
 def _curves(axis: Axes, t: Floats, curves: dict[str, Floats], label: str) -> None:
-    """Draw curves over time, with their names beside them."""
-    styles = ("r-", "b--", "k-") if len(curves) > 1 else ("k-",)
-    for (name, curve), style in zip(curves.items(), styles, strict=True):
-        axis.plot(t, curve, style, label=f"${name}$", lw=0.8 if style[0] == "k" else 1.5)
+    """Draw curves over time, the last of them in ink as it is made of the others."""
+    colors = (*LIGHT.parts[: len(curves) - 1], LIGHT.ink)
+    for (name, curve), color in zip(curves.items(), colors, strict=True):
+        axis.plot(t, curve, color=color, label=f"${name}$")
     axis.set_ylabel(label)
     if len(curves) > 1:
-        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    axis.grid(True, color="0.85", linewidth=0.6)
+        legend_above(axis)
+    grid(axis)
     axis.margins(x=0)
 
 

@@ -6,52 +6,21 @@ are scaled, m. Names are placed last, where they are clear of all that is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Wedge
 from matplotlib.transforms import Affine2D
 
-from pendcore.derive.document import Drawing
-from pendcore.derive.report.labels import Label, place
 from pendcore.messages import Floats
-
-BLACK, STEEL = "#1a1a1a", "#d5dde5"
-REACTION, WEIGHT, COUPLE, ANGLE = "#b3261e", "#1f5fa8", "#7a4a9e", "#2e6b3f"
-LOAD = "#a35a00"
+from pendcore.plotting.labels import Label, place
+from pendcore.plotting.style import Theme, theme_of
 
 MARGIN = 36.0
 """The margin around a drawing for the names at its border, points of print."""
-
-_FONT: Any = {
-    "mathtext.fontset": "stix",
-    "font.family": "STIXGeneral",
-    "font.size": 11,
-    "axes.titlesize": 11,
-    "svg.hashsalt": "pendcore",
-}
-
-
-@contextmanager
-def lettering() -> Iterator[None]:
-    """Draw figures with the letters of the equations, and save them the same every time."""
-    with mpl.rc_context(_FONT):
-        yield
-
-
-@lettering()
-def save(drawing: Drawing, path: Path) -> None:
-    """Write a picture into a file, of the kind that its suffix says, the same every time."""
-    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)
-    drawing.figure.draw_without_rendering()
-    drawing.figure.set_layout_engine("none")  # every picture has the first one's layout
-    drawing.figure.savefig(path, dpi=150, metadata=dates)
 
 
 @dataclass(slots=True)
@@ -66,7 +35,10 @@ class Sketch:
     drawn: list[tuple[Floats, float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
+    theme: Theme = field(init=False)
+
     def __post_init__(self) -> None:
+        self.theme = theme_of(self.axes)
         self.axes.set_aspect("equal")
         self.axes.set_axis_off()
         self.axes.invert_yaxis()
@@ -77,7 +49,13 @@ class Sketch:
 
     def disc(self, at: Floats, radius: float, **how: Any) -> None:
         """Draw a disc; the radius is a share of the size."""
-        self.axes.add_patch(Circle(tuple(at), radius * self.size, **{"ec": BLACK} | how))
+        self.axes.add_patch(
+            Circle(
+                tuple(at),
+                radius * self.size,
+                **{"ec": self.theme.ink, "facecolor": self.theme.ground} | how,
+            )
+        )
         self.drawn.append((np.atleast_2d(at), radius * self.size))
 
 
@@ -124,13 +102,20 @@ def name(
     on.labels.append(Label(text, places, np.zeros(2) if towards is None else towards, how))
 
 
+def number(on: Sketch, at: Floats | Sequence[Floats], link: int, towards: Floats) -> None:
+    """Write the number of a link in a circle beside it."""
+    circle = {"boxstyle": "circle,pad=0.22", "facecolor": on.theme.ground,
+              "edgecolor": on.theme.quiet, "lw": 0.7}  # fmt: skip
+    name(on, at, str(link), towards, fontsize=9, bbox=circle)
+
+
 def rod(on: Sketch, start: Floats, end: Floats) -> None:
     """Draw a link: a bar with round ends."""
     half, (x, y) = 0.026 * on.size, end - start
     bar = FancyBboxPatch(
         (-half, -half), np.hypot(x, y) + 2 * half, 2 * half,
         boxstyle=f"round,pad=0,rounding_size={half}",
-        facecolor=STEEL, edgecolor=BLACK, linewidth=1.1, zorder=3,
+        facecolor=on.theme.line, edgecolor=on.theme.ink, linewidth=1.1, zorder=3,
     )  # fmt: skip
     turned = Affine2D().rotate(float(np.arctan2(y, x))).translate(*start)
     bar.set_transform(turned + on.axes.transData)
@@ -140,7 +125,7 @@ def rod(on: Sketch, start: Floats, end: Floats) -> None:
 
 def pin(on: Sketch, at: Floats) -> None:
     """Draw a joint."""
-    on.disc(at, 0.017, facecolor="white", lw=1.1, zorder=6)
+    on.disc(at, 0.017, lw=1.1, zorder=6)
 
 
 def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
@@ -148,11 +133,11 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
     corners = at + np.array([[0.0, 0.0], [-a, -b], [a, -b]])
     base, hatch = at + np.array([[-2 * a, -b], [2 * a, -b]]), np.array([0.55 * a, -0.39 * b])
-    on.axes.add_patch(Polygon(corners, facecolor="white", ec=BLACK, lw=1.1))
-    on.axes.plot(*base.T, color=BLACK, lw=1.4)
+    on.axes.add_patch(Polygon(corners, ec=on.theme.ink, lw=1.1))
+    on.axes.plot(*base.T, color=on.theme.ink, lw=1.4)
     for k in np.linspace(-1.75, 1.75, 8):
         start = at + np.array([k * a, -b])
-        on.axes.plot(*np.array([start, start + hatch]).T, color=BLACK, lw=0.8)
+        on.axes.plot(*np.array([start, start + hatch]).T, color=on.theme.ink, lw=0.8)
     on.line(base[0], base[1])
     on.line(base[0] + hatch, base[1] + hatch)
     for corner in corners[1:]:
@@ -161,9 +146,9 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
 
 def mass_center(on: Sketch, at: Floats) -> None:
     """Draw a mass centre: a disc in quarters."""
-    on.disc(at, 0.022, facecolor="white", lw=0.9, zorder=5)
+    on.disc(at, 0.022, lw=0.9, zorder=5)
     for first in (0, 180):
-        quarter = Wedge(tuple(at), 0.022 * on.size, first, first + 90, color=BLACK, zorder=5)
+        quarter = Wedge(tuple(at), 0.022 * on.size, first, first + 90, color=on.theme.ink, zorder=5)
         on.axes.add_patch(quarter)
 
 
@@ -172,13 +157,14 @@ def arrow(
     start: Floats,
     along: Floats,
     text: str = "",
-    color: str = BLACK,
+    color: str | None = None,
     *,
     arriving: bool = False,
     zorder: int = 7,
     lw: float = 1.5,
 ) -> None:
     """Draw an arrow from a place (or arriving there), with its name at the free end."""
+    color = color or on.theme.ink
     start = start - along if arriving else start
     end = start + along
     _head(on, start, end, color, zorder, 13, lw)
@@ -208,7 +194,7 @@ def couple(
     """Draw a couple beside a place, in the sense from x to y (1) or against it (-1)."""
     middle = float(np.arctan2(towards[1], towards[0]))
     span = middle - 0.7 * sense, middle + 0.7 * sense
-    turning_arrow(on, at, text, radius=radius, span=span, color=COUPLE)
+    turning_arrow(on, at, text, radius=radius, span=span, color=on.theme.couple)
 
 
 def _head(
@@ -222,15 +208,17 @@ def _head(
 def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float) -> None:
     """Mark the angle of a link: a dashed line along +x, and an arc unless the angle is small."""
     reach = np.array([0.3 * on.size, 0.0])
-    on.axes.plot(*np.array([at, at + reach]).T, color=ANGLE, lw=0.9, ls=(0, (5, 3)), zorder=2)
+    on.axes.plot(
+        *np.array([at, at + reach]).T, color=on.theme.angle, lw=0.9, ls=(0, (5, 3)), zorder=2
+    )
     on.line(at, at + reach)
     shown = float(np.angle(np.exp(1j * angle)))
     if abs(shown) < np.radians(8):
-        name(on, at + 0.6 * reach, text, np.array([0.0, -1.0]), color=ANGLE)
+        name(on, at + 0.6 * reach, text, np.array([0.0, -1.0]), color=on.theme.angle)
         return
-    turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=ANGLE)
+    turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=on.theme.angle)
 
 
 def weight(on: Sketch, center: Floats, text: str, reach: float) -> None:
     """Draw a weight at a mass centre."""
-    arrow(on, center, np.array([0.0, reach * on.size]), text, WEIGHT)
+    arrow(on, center, np.array([0.0, reach * on.size]), text, on.theme.weight)
