@@ -26,18 +26,18 @@ def test_arrows_point_the_way_that_counts_as_positive(
 ) -> None:
     """On link 1 F_01 and F_21 point along +x and +y; on link 2 F_21 is the other way round."""
     sheets: list[list[tuple[str, list[float]]]] = []
-    sketch, arrow = sketch.Sketch, sketch.arrow
+    sheet, arrow = sketch.Sketch, sketch.arrow
 
     def begun(*given: Any) -> Any:
         sheets.append([])
-        return sketch(*given)
+        return sheet(*given)
 
     def looked_at(on: Any, start: Any, along: Any, text: str = "", *more: Any, **how: Any) -> None:
         sheets[-1].append((text, np.sign(np.round(along, 9)).tolist()))
         arrow(on, start, along, text, *more, **how)
 
-    monkeypatch.setattr(drawing, "Sketch", begun)
-    monkeypatch.setattr(drawing, "arrow", looked_at)
+    monkeypatch.setattr(sketch, "Sketch", begun)
+    monkeypatch.setattr(sketch, "arrow", looked_at)
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
     drawn("free_bodies", scene, [0.5] * n)
     for i, arrows in enumerate(sheets, start=1):
