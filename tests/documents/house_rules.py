@@ -88,7 +88,7 @@ HELD_BY_USERS = {
     f"python/pendcore/{name}.py"
     for name in (
         *("_scene/scene", "_run/solution", "_cases/case", "_ensemble/ensemble"),
-        *("__init__", "_api/simulate", "derive/derivation"),
+        *("__init__", "_api/simulate", "_horizon/lyapunov", "derive/derivation"),
     )
 }
 

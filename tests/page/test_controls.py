@@ -23,11 +23,11 @@ def test_dragging_the_tip_starts_the_run_elsewhere(sol, opened, sized, size):
         " return [p[4] * view.pixels, p[5] * view.pixels,"
         " left + view.center[0], top + view.center[1]] })()"
     )
-    page.drag((left + x, top + y), (left + x - 40, top + y - 60))
+    page.drag((left + x, top + y), (left + x - 70, top + y - 20))
     moved = page.ask("pendcorePage.given.start.q")
     assert moved[0] == 0.8
     metre = page.ask("pendcorePage.view.pixels")
-    wanted = np.arctan2(y - 60 - metre * np.sin(0.8), x - 40 - metre * np.cos(0.8))
+    wanted = np.arctan2(y - 20 - metre * np.sin(0.8), x - 70 - metre * np.cos(0.8))
     assert moved[1] == pytest.approx(wanted, abs=0.05)
     run = pc.simulate(sol.scene, q0=moved, t_span=(0, 8))
     assert page.ask("pendcorePage.hash") == run._run.fingerprint
@@ -147,7 +147,7 @@ def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page, sol):
 def test_a_run_that_is_refused_leaves_the_picture_and_says_nothing_of_it(page):
     page.do("pendcorePage.given.link[0].length = -1; pendcorePage.changed()")
     assert page.text("bits") == ""
-    assert page.text("trust") == "The picture is that of the last run that was possible."
+    assert page.text("trust") == "the picture is that of the last run that was possible"
     page.do("pendcorePage.given.link[0].length = 1; pendcorePage.changed()")
     assert page.text("bits").startswith("the bits of Python")
 
@@ -225,7 +225,8 @@ def choose(page, menu, label):
 
 def test_any_quantity_is_drawn_over_any_other(page, sol):
     phase = drawn(page)
-    t = np.linspace(0, 8, len(phase[0]["x"]))
+    t = np.array(page.ask("pendcorePage.curves.times"))
+    assert set(sol.t) <= set(t)  # the run's own steps, and times between them
     states = sol(t)
     beside = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 8), t_eval=t)
     assert [one["name"] for one in phase] == ["link 1", "link 2"]
@@ -311,7 +312,61 @@ def test_what_does_not_change_is_drawn_too(opened):
 
 
 def test_a_button_says_copied_for_a_while_and_then_its_name(page):
+    page.do("document.getElementById('share').open = true")
     page.click("copy-toml")
     page.click("copy-toml")
-    assert page.text("copy-toml") == "Copied"
+    page.wait("document.getElementById('copy-toml').textContent === 'Copied'")
     page.wait("document.getElementById('copy-toml').textContent === 'Copy TOML'")
+
+
+def test_a_phase_portrait_has_angles_within_a_turn_and_ends_where_the_run_is_wrong(opened):
+    chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
+    page = opened(chaotic)
+    page.wait("pendcorePage.validUntil !== null")
+    until = page.ask("pendcorePage.validUntil")
+    for i, one in enumerate(page.ask("pendcorePage.curves.chosen.curves")):
+        x = np.array([np.nan if value is None else value for value in one["x"]])
+        assert np.nanmax(np.abs(x)) <= np.pi
+        t = np.array(page.ask("pendcorePage.curves.times"))
+        right = t[t <= until]
+        assert np.isfinite(x).sum() == len(right) < 0.9 * len(t)
+        apart = x[np.isfinite(x)] - chaotic(right)[i]
+        assert np.abs(np.angle(np.exp(1j * apart))).max() < 1e-6
+        assert np.nanmax(np.abs(np.diff(x))) < np.pi  # gaps, where the angle jumps by a turn
+
+
+def test_two_runs_are_shown_side_by_side(page, sol):
+    assert page.ask("document.getElementById('beside').hidden")
+    offered = page.ask("[...document.querySelectorAll('#compare option')].map((one) => one.value)")
+    assert offered == [
+        "nothing", "without 1: ViscousJoint", "a start 0.001 rad away", "the run as it was"
+    ]  # fmt: skip
+    free = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 8))
+    away = pc.simulate(sol.scene, q0=[0.8, 1.001], t_span=(0, 8))
+    for name, run in zip(offered[1:], (free, away, sol), strict=True):
+        page.enter("#compare", name)
+        assert page.ask("document.getElementById('beside').hidden") is False
+        assert page.text("other-name") == name
+        assert page.ask("[...pendcorePage.other.state(8)]") == run(8.0).tolist()
+        dashed = page.ask("pendcorePage.curves.angles.curves.slice(2)")
+        assert [one["name"] for one in dashed] == ["other q1", "other q2"]
+        assert dashed[1]["y"][-1] == pytest.approx(np.degrees(run(8.0)[1]), rel=1e-12)
+    page.do("pendcorePage.given.gravity = 1.6; pendcorePage.changed()")
+    assert page.ask("[...pendcorePage.other.state(8)]") == sol(8.0).tolist()
+    page.enter("#compare", "nothing")
+    assert page.ask("document.getElementById('beside').hidden")
+
+
+def test_laws_are_mathematics(page):
+    page.click("tab-setup")
+    law = page.ask("document.querySelector('#setup .law').innerHTML")
+    assert law == (
+        "<i>τ</i> = −(<i>b</i> <i>w</i> + <i>b</i><sub>2</sub> <i>w</i> |<i>w</i>| + "
+        "<i>b</i><sub>3</sub> <i>w</i><sup>3</sup>),  <i>w</i> = <i>φ̇</i>"
+    )
+
+
+def test_keys_are_spoken_of_where_there_may_be_some(page):
+    is_touched = page.ask("matchMedia('(hover: none)').matches")
+    shown = page.ask("getComputedStyle(document.querySelector('.keys')).display")
+    assert shown == ("none" if is_touched else "block")

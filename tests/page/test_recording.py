@@ -17,7 +17,8 @@ def sol():
 def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, opened, monkeypatch):
     monkeypatch.setattr(html, "core_for_browsers", lambda: None)
     page = opened(sol)
-    assert "no core for browsers (`make page` in a clone builds it" in page.text("about")
+    assert "no core for browsers (make page in a clone builds it" in page.text("notice")
+    assert page.ask("notice.hidden") is False
     assert page.text("bits") == f"played back; Python's hash {sol._run.fingerprint}"
     page.do("pendcorePage.go(2)")
     shown = page.ask("pendcorePage.t")
@@ -26,12 +27,12 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, op
     hidden = "getComputedStyle(document.getElementById('tab-setup')).display"
     assert page.ask(hidden) == "none"
     assert page.complaints() == []
-    assert "Right to 0.1 rad to its end." in page.text("trust")
+    assert "right to 0.1 rad to the end" in page.text("trust")
 
 
 def test_functions_of_ones_own_are_played_back(opened):
     brake = pc.effects.User(function=lambda t, q, qd: [-0.1 * qd[0], 0.0])
     run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), q0=0.5, t_span=(0, 4))
     page = opened(run)
-    assert "functions of one's own stay in Python" in page.text("about")
+    assert "functions of one's own stay in Python" in page.text("notice")
     assert page.ask("[...pendcorePage.run.state(4)]") == pytest.approx([*run(4.0)], abs=1e-5)

@@ -19,12 +19,35 @@ export function fitted(canvas) {
   return { pen, width, height };
 }
 
-/** A line through places [x, y]. */
+/** A line through places [x, y], with a gap wherever one is not a number. */
 export function drawLine(pen, ...places) {
   pen.beginPath();
-  for (const [x, y] of places) pen.lineTo(x, y); // the first lineTo of a path moves there
+  let isOpen = false;
+  for (const [x, y] of places) {
+    const isNumber = Number.isFinite(x) && Number.isFinite(y);
+    if (isNumber && isOpen) pen.lineTo(x, y);
+    else if (isNumber) pen.moveTo(x, y);
+    isOpen = isNumber;
+  }
   pen.stroke();
 }
+
+/** A text that can be read in front of anything. */
+export function drawText(pen, text, x, y, fill) {
+  pen.strokeStyle = color("panel");
+  pen.lineWidth = 4;
+  pen.lineJoin = "round";
+  pen.strokeText(text, x, y);
+  pen.fillStyle = fill;
+  pen.fillText(text, x, y);
+}
+
+/** The colour of link i, counted from 0. */
+export function linkColor(i) {
+  return color(`link-${(i % 6) + 1}`);
+}
+
+export const FONT = "13px system-ui, sans-serif";
 
 export function drawDisc(pen, place, radius) {
   pen.beginPath();

@@ -1,11 +1,12 @@
 /** A small chart on a canvas: curves in axes with units, a shade, and a line that moves along. */
 
-import { color, drawDisc, drawLine, fitted } from "./canvas.mjs";
+import { color, drawDisc, drawLine, FONT, fitted } from "./canvas.mjs";
 
-const LEFT = 52;
-const RIGHT = 10;
-const LINE = 14; // the height of a row of names
-const BOTTOM = 36;
+const LEFT = 56;
+const RIGHT = 12;
+const LINE = 17; // the height of a row of names
+const BOTTOM = 40;
+const SWATCH = 18; // the line before a name, with the gap after it
 const MOST_TICKS = 10;
 const MOST_ROWS = 3; // of names; the others are left out
 
@@ -34,15 +35,23 @@ export class Chart {
     this.isDown = false; // y points up, as it does not in the plane of the pendulum
     this.curves = [];
     this.box = [0, 1, 0, 1];
+    /** All that does not move with time, drawn once, and what it was drawn for. */
+    this.still = document.createElement("canvas");
+    this.drawnFor = "";
+    this.version = 0;
+    /** Where a point stands on the canvas, and where its axes begin from above, CSS pixels. */
+    this.at = (x, y) => [x, y];
+    this.top = 0;
   }
 
   #scaled(value) {
     return this.log ? Math.log10(value) : value;
   }
 
-  /** Curves are { name, color, x, y, dots }. */
+  /** Curves are { name, color, x, y, dots, dash }; what is not a number is a gap. */
   set(curves) {
     this.curves = curves;
+    this.version += 1;
     let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
     for (const { x, y } of curves) {
       for (let k = 0; k < x.length; ++k) {
@@ -65,8 +74,31 @@ export class Chart {
   /** `past` is where the shade begins, `now` where the line is; `points` are marked. */
   draw({ past = null, now = null, points = [] } = {}) {
     const { pen, width, height } = fitted(this.canvas);
+    if (width === 0) return; // in a tab that is closed
+    const { still } = this;
+    const needed = [this.canvas.width, this.canvas.height, past, color("ink"), this.version].join();
+    if (needed !== this.drawnFor) {
+      [still.width, still.height] = [this.canvas.width, this.canvas.height];
+      const quiet = still.getContext("2d");
+      quiet.setTransform(pen.getTransform());
+      this.#drawStill(quiet, width, height, past);
+      this.drawnFor = needed;
+    }
+    pen.drawImage(still, 0, 0, width, height);
+    if (now !== null) {
+      const [x] = this.at(now, 1);
+      pen.strokeStyle = color("ink");
+      drawLine(pen, [x, this.top], [x, height - BOTTOM]);
+    }
+    for (const { x, y, color: fill } of points) {
+      pen.fillStyle = color(fill);
+      drawDisc(pen, this.at(x, y), 4);
+    }
+  }
+
+  #drawStill(pen, width, height, past) {
     const [left, right, low, high] = this.box;
-    pen.font = "11px system-ui, sans-serif";
+    pen.font = FONT;
     const legend = this.#legend(pen, width);
     const top = 8 + LINE * Math.min(legend.length, MOST_ROWS);
     const at = (x, y) => {
@@ -76,27 +108,21 @@ export class Chart {
         top + (this.isDown ? share : 1 - share) * (height - top - BOTTOM),
       ];
     };
+    [this.at, this.top] = [at, top];
     if (past !== null && past < right) {
       pen.fillStyle = color("line");
       const [x] = at(past, 0);
       pen.fillRect(x, top, width - RIGHT - x, height - top - BOTTOM);
     }
     this.#axes(pen, width, height, top, at);
-    for (const { x, y, color: stroke, dots } of this.curves) {
+    for (const { x, y, color: stroke, dots, dash } of this.curves) {
       pen.strokeStyle = pen.fillStyle = color(stroke);
-      pen.lineWidth = 1.3;
+      pen.lineWidth = 1.5;
+      pen.setLineDash(dash ?? []);
       const places = Array.from(x, (one, k) => at(one, y[k]));
       drawLine(pen, ...places);
+      pen.setLineDash([]);
       if (dots) for (const [px, py] of places) pen.fillRect(px - 2, py - 2, 4, 4);
-    }
-    if (now !== null) {
-      const [x] = at(now, 1);
-      pen.strokeStyle = color("ink");
-      drawLine(pen, [x, top], [x, height - BOTTOM]);
-    }
-    for (const { x, y, color: fill } of points) {
-      pen.fillStyle = color(fill);
-      drawDisc(pen, at(x, y), 4);
     }
     this.#drawLegend(pen, width, legend);
   }
@@ -107,13 +133,13 @@ export class Chart {
     const round = (from, to) =>
       this.log ? ticks(from, to).filter((one) => Number.isInteger(one)) : ticks(from, to);
     pen.strokeStyle = color("line");
-    pen.fillStyle = color("faint");
+    pen.fillStyle = color("quiet");
     pen.lineWidth = 1;
     for (const tick of round(left, right)) {
       const [x] = at(back(tick), back(low));
       pen.strokeRect(x, top, 0, height - top - BOTTOM);
       pen.textAlign = "center";
-      pen.fillText(label(back(tick)), x, height - BOTTOM + 14);
+      pen.fillText(label(back(tick)), x, height - BOTTOM + 16);
     }
     for (const tick of round(low, high)) {
       const [, y] = at(back(left), back(tick));
@@ -122,9 +148,9 @@ export class Chart {
       pen.fillText(label(back(tick)), LEFT - 5, y + 4);
     }
     pen.textAlign = "left";
-    pen.fillText(this.names[1], 4, 13);
+    pen.fillText(this.names[1], 4, 15);
     pen.textAlign = "right";
-    pen.fillText(this.names[0], width - RIGHT, height - 5);
+    pen.fillText(this.names[0], width - RIGHT, height - 6);
   }
 
   /** The names of the curves, in as many rows as they need beside the name of the axis. */
@@ -132,29 +158,34 @@ export class Chart {
     const free = width - LEFT - RIGHT - pen.measureText(this.names[1]).width;
     const rows = [[]];
     let left = free;
-    for (const { name, color: fill } of this.curves) {
+    for (const { name, color: fill, dash } of this.curves) {
       if (!name) continue;
-      const needs = pen.measureText(name).width + 10;
+      const needs = pen.measureText(name).width + SWATCH + 10;
       if (needs > left && rows.at(-1).length > 0) {
         rows.push([]);
         left = free;
       }
       left -= needs;
-      rows.at(-1).push({ name, fill, needs });
+      rows.at(-1).push({ name, fill, needs, dash });
     }
     return rows;
   }
 
   #drawLegend(pen, width, rows) {
-    pen.textAlign = "right";
+    pen.textAlign = "left";
+    pen.lineWidth = 2.5;
     for (const [k, row] of rows.slice(0, MOST_ROWS).entries()) {
       let x = width - RIGHT;
-      for (const { name, fill, needs } of row.reverse()) {
-        pen.fillStyle = color(fill);
-        pen.fillText(name, x, 13 + k * LINE);
+      const y = 15 + k * LINE;
+      for (const { name, fill, needs, dash } of row.reverse()) {
         x -= needs;
+        pen.strokeStyle = color(fill);
+        pen.setLineDash(dash ?? []);
+        drawLine(pen, [x + 10, y - 4], [x + 4 + SWATCH, y - 4]);
+        pen.fillStyle = color("ink");
+        pen.fillText(name, x + 10 + SWATCH, y);
       }
     }
-    pen.textAlign = "left";
+    pen.setLineDash([]);
   }
 }

@@ -58,7 +58,7 @@ export function numberField({
   };
   field.addEventListener("input", () => take(field.value, slider));
   slider.addEventListener("input", () => take(slider.value, field));
-  return labelled(unit ? `${name} (${unit})` : name, field, slider);
+  return labelled(unit ? `${name} (${unit.replace("^2", "²")})` : name, field, slider);
 }
 
 /** A name before its field, and what else belongs to it. */
@@ -94,20 +94,39 @@ function interval(value, range) {
   return least ? [Number(least[1]), Number(least[1]) + size] : [-size, size];
 }
 
+const LETTERS = { tau: "τ", phid: "φ̇", phi: "φ", omega: "ω", rho: "ρ", phase: "ψ" };
+const UPRIGHT = new Set("sin exp sgn at an or is of the air constant".split(" "));
+
+/** A law as the core tells it, in HTML: letters in italics, indices, powers, signs. */
+export function formula(law) {
+  return law
+    .replaceAll("<=", "≤")
+    .replaceAll("&", "&amp;")
+    .replace(/abs\(([^()]+)\)/g, "|$1|")
+    .replace(/(^|[ (=])-(?=[ (\w])/g, "$1−")
+    .replace(/[A-Za-z]+(?=[\d_^ ,;)(/+|*-]|$)/g, (word) =>
+      LETTERS[word] || (word.length < 3 && !UPRIGHT.has(word))
+        ? `<i>${LETTERS[word] ?? word}</i>`
+        : word,
+    )
+    .replace(/(<\/i>)(\d)/g, "$1<sub>$2</sub>")
+    .replace(/_(?:<i>)?(\w+)(?:<\/i>)?/g, "<sub>$1</sub>")
+    .replace(/\^(?:<i>)?(\w+)(?:<\/i>)?/g, "<sup>$1</sup>");
+}
+
 export class Controls {
   /** `changed` is called when the case has changed; the fields stay, unless it has other parts. */
-  constructor(form, { kinds, defaults, changed }) {
-    this.form = form;
+  constructor(box, { kinds, defaults, changed }) {
+    this.box = box;
     this.kinds = kinds;
     this.defaults = defaults;
     this.changed = changed;
     this.given = null;
-    form.addEventListener("submit", (event) => event.preventDefault());
   }
 
   show(given) {
     this.given = given;
-    this.form.replaceChildren(
+    this.box.replaceChildren(
       this.#world(),
       ...given.link.map((link, i) => this.#link(link, i)),
       ...given.effect.map((effect, i) => this.#effect(effect, i)),
@@ -191,7 +210,8 @@ export class Controls {
     });
     const fields = this.#parameters(effect, known.parameters);
     return this.#group(`${i + 1}: ${known.name}`, [
-      element("p", { className: "small", textContent: `${known.sentence} ${known.law}` }),
+      element("p", { className: "small", textContent: known.sentence }),
+      element("p", { className: "law", innerHTML: formula(known.law) }),
       ...fields,
       remove,
     ]);

@@ -1,15 +1,20 @@
 /** The curves beside the picture: angles, energies, and any variable over any other. */
 
 import { Chart } from "./chart.mjs";
-import { grid } from "./simulate.mjs";
 
-const COLORS = ["first", "second", "third", "fourth"];
-const ACCOUNTS = ["fourth", "faint", "ink"];
+const LINKS = [1, 2, 3, 4, 5, 6].map((i) => `link-${i}`);
+const ENERGIES = ["part-1", "part-2", "ink"];
+const ACCOUNTS = ["part-3", "part-4", "part-5", "quiet"];
+const METHODS = ["ink", ...LINKS];
 const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link turns by this, rad
+
+const TURN = 2 * Math.PI;
+/** The same angle from -pi to pi, rad. */
+const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
 
 /** What can be drawn. Those of a link have an index; `of` gets a run, a time, a state and it. */
 const QUANTITIES = [
-  { name: "q", unit: "rad", perLink: true, of: (_run, _t, state, i) => state[i] },
+  { name: "q", unit: "rad", perLink: true, isAngle: true, of: (_run, _t, state, i) => state[i] },
   { name: "qd", unit: "rad/s", perLink: true, of: (run, _t, state, i) => state[run.n + i] },
   {
     name: "force at joint",
@@ -46,6 +51,10 @@ export class Curves {
   times = [];
   states = [];
   n = 0;
+  /** A second run, whose angles are dashed, or null. */
+  other = null;
+  /** Until when the run is right, s; null if that is not known. */
+  until = null;
 
   constructor(byId) {
     this.angles = new Chart(byId("angles"), ["t (s)", "q (deg)"]);
@@ -61,18 +70,11 @@ export class Curves {
     if (needed > POINTS.least) this.#sample(Math.min(needed, POINTS.most));
     this.#fillMenus();
     const { times, states } = this;
-    this.angles.set(
-      Array.from({ length: run.n }, (_x, i) => ({
-        name: `q${i + 1}`,
-        color: COLORS[i % COLORS.length],
-        x: times,
-        y: states.map((state) => (state[i] * 180) / Math.PI),
-      })),
-    );
+    this.#drawAngles();
     const energies = times.map((t, k) => run.energies(t, states[k]));
     const own = ["kinetic", "potential", "total"].map((name, k) => ({
       name,
-      color: COLORS[k],
+      color: ENERGIES[k],
       x: times,
       y: energies.map(([T, V]) => [T, V, T + V][k]),
     }));
@@ -86,9 +88,36 @@ export class Curves {
     this.choose();
   }
 
+  /** Takes a second run beside the first, or none. */
+  compare(other) {
+    this.other = other;
+    this.#drawAngles();
+  }
+
+  #drawAngles() {
+    const { times, states, run, other } = this;
+    const ofOther = other ? other.states(times) : [];
+    const curves = (rows, name, dash) =>
+      Array.from({ length: rows.length ? run.n : 0 }, (_x, i) => ({
+        name: `${name}q${i + 1}`,
+        color: LINKS[i % LINKS.length],
+        x: times,
+        y: rows.map((state) => (state[i] * 180) / Math.PI),
+        dash,
+      }));
+    this.angles.set([...curves(states, "", []), ...curves(ofOther, "other ", [5, 4])]);
+  }
+
+  /** Takes some times in each of the run's own steps, so that there are at least `count` in all. */
   #sample(count) {
     const { run } = this;
-    this.times = grid(run.begin, run.end, Math.min(run.count, count));
+    const steps = [...run.steps];
+    const parts = run.count === Infinity ? Math.ceil(count / Math.max(steps.length - 1, 1)) : 1;
+    this.times = steps.slice(1).flatMap((end, k) => {
+      const begin = steps[k];
+      return Array.from({ length: parts }, (_x, i) => begin + ((end - begin) * i) / parts);
+    });
+    this.times.push(run.end);
     this.states = run.states(this.times);
   }
 
@@ -119,17 +148,28 @@ export class Curves {
     this.chosen.isDown = y.isDown === true;
     this.isOverTime = x.isTime === true;
     const isTogether = x.isTogether || y.isTogether;
+    this.isWrapped = !this.isOverTime;
     this.pairs = Array.from({ length: isTogether ? run.n : 1 }, (_x, i) => ({
       name: isTogether ? `link ${i + 1}` : "",
-      color: COLORS[i % COLORS.length],
-      at: (t, state) => [x, y].map((one) => one.of(run, t, state, one.link ?? i)),
+      color: isTogether ? LINKS[i % LINKS.length] : LINKS[(x.link ?? y.link ?? 0) % LINKS.length],
+      at: (t, state) => [x, y].map((one) => this.#value(one, run, t, state, i)),
     }));
+    // What is wrong is no portrait of the motion: the curves end where the run is right no more.
+    const isRight = (t) =>
+      this.isOverTime || this.until === null || run.direction * (t - this.until) <= 0;
+    const last = times.findLastIndex(isRight) + 1;
     this.chosen.set(
       this.pairs.map(({ name, color, at }) => {
-        const points = times.map((t, k) => at(t, states[k]));
-        return { name, color, x: points.map((one) => one[0]), y: points.map((one) => one[1]) };
+        const points = times.slice(0, last).map((t, k) => at(t, states[k]));
+        return { name, color, ...torn(points, [x, y]) };
       }),
     );
+  }
+
+  /** A quantity; an angle that is not drawn over time is within a turn. */
+  #value(one, run, t, state, i) {
+    const value = one.of(run, t, state, one.link ?? i);
+    return one.isAngle && this.isWrapped ? wrapped(value) : value;
   }
 
   /** Marks the present, and shades what lies past the time until which the run is right. */
@@ -140,8 +180,19 @@ export class Curves {
       const [x, y] = at(t, state);
       return { x, y, color };
     });
-    this.chosen.draw(this.isOverTime ? { past, now: t } : { points });
+    const isRight = past === null || this.run.direction * (t - past) <= 0;
+    this.chosen.draw(this.isOverTime ? { past, now: t } : { points: isRight ? points : [] });
   }
+}
+
+/** Points as x and y, with a gap where an angle jumps by a turn. */
+function torn(points, quantities) {
+  const isJump = (k) =>
+    quantities.some(
+      (one, axis) => one.isAngle && Math.abs(points[k][axis] - points[k - 1][axis]) > Math.PI,
+    );
+  const shown = points.flatMap((point, k) => (k > 0 && isJump(k) ? [[NaN, NaN], point] : [point]));
+  return { x: shown.map((one) => one[0]), y: shown.map((one) => one[1]) };
 }
 
 /** What accuracy costs: the runs of each method, error against time. */
@@ -151,7 +202,7 @@ export function drawCost(chart, points) {
     methods.map((name, k) => {
       const own = points.filter((one) => one.method === name && one.error > 0);
       const [x, y] = [own.map((one) => one.ms), own.map((one) => one.error)];
-      return { name, color: COLORS[k % COLORS.length], dots: true, x, y };
+      return { name, color: METHODS[k % METHODS.length], dots: true, x, y };
     }),
   );
   chart.draw();

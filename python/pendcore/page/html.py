@@ -17,6 +17,7 @@ from pendcore import Case, Solution, build, effects, simulate
 from pendcore.messages import silence, text
 from pendcore.methods import known_methods
 from pendcore.options import OPTIONS
+from pendcore.plotting import css_variables
 from pendcore.plotting.frames import moves_of
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
@@ -31,7 +32,7 @@ LEFT_OUT = {"error", "events", "progress", "on_failure"}
 """The options of a run that a page does without."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "
-    "(`make page` in a clone builds it; wheels have it)."
+    "(make page in a clone builds it; wheels have it)."
 )
 OWN_FUNCTIONS = "This page plays back what Python computed: functions of one's own stay in Python."
 LIMIT = 0.1
@@ -72,11 +73,12 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
         "recording": None if core is not None else _recording(solution),
-        "about": f"pendcore {build.version}. {told}".strip(),
+        "about": f"Made by pendcore {build.version}.",
+        "notice": told,
     }
     parts = {
         "TITLE": escape(text("title", title or "") or solution.name or "A pendulum"),
-        "STYLE": _source("style.css"),
+        "STYLE": css_variables() + _source("style.css"),
         "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),
         "CORE": "" if core is None else _bundle(CORE_MODULES),

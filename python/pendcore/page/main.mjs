@@ -26,6 +26,8 @@ const data = parseCase(byId("data").textContent);
 class Page {
   run = null;
   ghost = null;
+  /** The run beside this one, if there is one. */
+  other = null;
   neighbours = null;
   hash = "";
   copied = null;
@@ -42,6 +44,9 @@ class Page {
   /** Why the address was refused, if it was. */
   refusal = "";
   traceParts = TRACE_PARTS.least;
+  /** Whether the case was refused, so that the picture is older than it. */
+  isRefused = false;
+  comparisons = {};
 
   constructor(core, bytes) {
     this.core = core;
@@ -52,6 +57,7 @@ class Page {
     this.isPlaying = false;
     this.validUntil = data.valid_until;
     this.view = new SceneView(byId("scene"));
+    this.otherView = new SceneView(byId("other"));
     this.curves = new Curves(byId);
     this.cost = new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true });
     if (core) {
@@ -65,6 +71,8 @@ class Page {
       document.body.classList.add("without-core");
     }
     byId("about").textContent = data.about;
+    byId("notice").textContent = data.notice;
+    byId("notice").hidden = data.notice === "";
     this.#listen();
     this.begin();
     this.tell();
@@ -141,13 +149,17 @@ class Page {
     }
     this.run?.free();
     this.run = run;
+    this.isRefused = false;
     this.say(run.success ? "" : run.message);
     this.t = run.within(this.t);
     const time = byId("time");
     [time.min, time.max] = [run.begin, run.end].sort((a, b) => a - b).map(String);
-    this.view.largestForce = this.#largestForce();
+    this.view.typicalForce = this.otherView.typicalForce = this.#typicalForce();
     this.#ghost();
+    this.#offerComparisons();
+    this.#compare();
     if (!this.dragged) this.#bits();
+    this.curves.until = this.validUntil;
     this.curves.set(run);
     const needed = (TRACE * this.curves.fastest) / TRACE_PARTS.angle;
     this.traceParts = Math.ceil(clamp(needed, TRACE_PARTS.least, TRACE_PARTS.most));
@@ -156,25 +168,64 @@ class Page {
     return undefined;
   }
 
+  /** What can run beside this one: without an effect, from another start, as the page was made. */
+  #offerComparisons() {
+    const menu = byId("compare");
+    const before = menu.value;
+    const known = (kind) => data.kinds.find((one) => one.kind === kind).name;
+    this.comparisons = {
+      nothing: null,
+      ...Object.fromEntries(
+        this.given.effect.map((one, i) => [
+          `without ${i + 1}: ${known(one.kind)}`,
+          (given) => given.effect.splice(i, 1),
+        ]),
+      ),
+      "a start 0.001 rad away": ({ start }) => (start.q[start.q.length - 1] += 1e-3),
+      "the run as it was": (given) => Object.assign(given, parseCase(this.original)),
+    };
+    const names = Object.keys(this.comparisons);
+    menu.replaceChildren(...names.map((name) => new Option(name, name)));
+    menu.value = names.includes(before) ? before : "nothing";
+  }
+
+  #compare() {
+    this.other?.free();
+    this.other = null;
+    const name = byId("compare").value;
+    const change = this.comparisons[name];
+    if (this.core && change) {
+      const given = structuredClone(this.given);
+      change(given);
+      try {
+        this.other = new LiveRun(this.core, given);
+      } catch (error) {
+        this.say(`${name}: ${error.message}`);
+      }
+    }
+    byId("beside").hidden = !this.other;
+    byId("other-name").textContent = name;
+    if (this.run) this.curves.compare(this.other?.n === this.run.n ? this.other : null);
+  }
+
   /** The picture stays that of the last run that was possible, and nothing is said of it. */
   refused(reason) {
+    this.isRefused = true;
     this.say(reason);
     this.question += 1;
     byId("bits").textContent = "";
-    byId("trust").textContent = "The picture is that of the last run that was possible.";
+    this.#sayTrust("lost", "the picture is that of the last run that was possible");
   }
 
-  #largestForce() {
+  /** The size of a force, N, than which few of the run are larger: arrows are as long as that. */
+  #typicalForce() {
     const { run } = this;
-    const sizes = grid(run.begin, run.end, FORCES).map((t) => {
+    const sizes = grid(run.begin, run.end, FORCES).flatMap((t) => {
       const forces = run.reactions(t, run.state(t));
-      let largest = 0;
-      for (let i = 0; i < forces.length; i += 2) {
-        largest = Math.max(largest, Math.hypot(forces[i], forces[i + 1]));
-      }
-      return largest;
+      return Array.from({ length: run.n }, (_x, i) => Math.hypot(forces[2 * i], forces[2 * i + 1]));
     });
-    return Math.max(...sizes.filter(Number.isFinite), 0);
+    const sorted = sizes.filter(Number.isFinite).sort((a, b) => a - b);
+    return sorted[Math.floor(0.95 * (sorted.length - 1))] || 1;
   }
 
   say(text) {
@@ -186,7 +237,6 @@ class Page {
   /** Shows the hash of the run, beside Python's if it is still Python's run. */
   #bits() {
     const badge = byId("bits");
-    badge.classList.remove("same", "other");
     if (!this.core) {
       badge.textContent = data.hash ? `played back; Python's hash ${data.hash}` : "played back";
       return;
@@ -200,7 +250,6 @@ class Page {
       return;
     }
     const same = this.hash === data.hash;
-    badge.classList.add(same ? "same" : "other");
     badge.textContent = same
       ? `the bits of Python: hash ${this.hash} = ${data.hash}`
       : `not the bits of Python: hash ${this.hash}, Python's ${data.hash}`;
@@ -221,7 +270,6 @@ class Page {
 
   /** What takes longer than a frame comes later; an answer to an older question is dropped. */
   #ask() {
-    this.trust();
     if (!this.background) return;
     clearTimeout(this.later);
     const asked = ++this.question;
@@ -233,7 +281,8 @@ class Page {
           const until = await this.background.ask("horizon", given, { limit: data.limit });
           if (isStale()) return;
           this.validUntil = until;
-          this.trust();
+          this.curves.until = until;
+          this.curves.choose();
           this.draw();
         }
         if (byId("neighbours").checked && !this.neighbours) {
@@ -245,23 +294,30 @@ class Page {
           this.draw();
         }
       } catch (error) {
-        if (!isStale())
-          byId("trust").textContent = `How far to trust it is not known: ${error.message}`;
+        if (!isStale()) this.#sayTrust("", `how far it is right is not known: ${error.message}`);
       }
     }, 150);
   }
 
+  /** Says until when the run is right, in the words of what is shown now. */
   trust() {
-    const told = byId("trust");
     const until = this.validUntil;
-    if (until === null) told.textContent = "How far to trust this run is being found out.";
-    else if (
-      Math.abs(until - this.run.end) < 1e-9 * Math.abs(this.run.end) ||
-      this.#isRight(this.run.end)
-    )
-      told.textContent = `Right to ${data.limit} rad to its end.`;
-    else
-      told.textContent = `Right to ${data.limit} rad until t = ${until.toPrecision(4)} s; pale after that.`;
+    const [kind, words] =
+      until === null
+        ? ["", "how far it is right is being found out"]
+        : this.#isRight(this.run.end) || Math.abs(until - this.run.end) < 1e-9 * Math.abs(until)
+          ? ["right", `right to ${data.limit} rad to the end`]
+          : this.#isRight(this.t)
+            ? ["until", `right to ${data.limit} rad until ${until.toPrecision(4)} s`]
+            : ["lost", `not right any more, since ${until.toPrecision(4)} s`];
+    this.#sayTrust(kind, words);
+  }
+
+  #sayTrust(kind, words) {
+    const told = byId("trust");
+    if (told.textContent === words) return;
+    told.className = `badge ${kind}`;
+    told.textContent = words;
   }
 
   #isRight(t) {
@@ -308,6 +364,22 @@ class Page {
       neighbours: byId("neighbours").checked ? this.neighbours : null,
     };
     this.view.draw(shown);
+    if (this.other) {
+      const { other } = this;
+      const [at, view] = [other.within(t), this.otherView];
+      const otherState = other.state(at);
+      Object.assign(view, { zoom: this.view.zoom, shift: this.view.shift });
+      view.draw({
+        ...shown,
+        places: other.places(at, otherState),
+        lengths: other.lengths,
+        forces: shown.forces && other.reactions(at, otherState),
+        path: shown.path && this.#path(at, other),
+        ghost: null,
+        neighbours: null,
+      });
+    }
+    if (!this.isRefused) this.trust();
     const past = this.#isRight(run.end) ? null : this.validUntil;
     this.curves.draw(t, state, past);
     byId("clock").textContent = `${t.toFixed(2)} s`;
@@ -319,8 +391,7 @@ class Page {
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
 
-  #path(t) {
-    const { run } = this;
+  #path(t, run = this.run) {
     const since = run.within(t - run.direction * TRACE);
     const times = grid(since, t, this.traceParts);
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
@@ -354,6 +425,10 @@ class Page {
       this.draw();
     });
     byId("neighbours").addEventListener("change", () => this.#ask());
+    byId("compare").addEventListener("change", () => {
+      this.#compare();
+      this.draw();
+    });
     byId("measure").addEventListener("click", () => this.#measure());
     this.#tabs();
     listenToKeys(byId("scene"), this);

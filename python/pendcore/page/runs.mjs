@@ -34,6 +34,7 @@ export class LiveRun extends Played {
     this.run = run;
     this.accounts = run.accounts;
     this.count = Infinity; // it has a state at any time
+    this.steps = run.t;
   }
   free() {
     this.run.free();
@@ -76,6 +77,7 @@ export class Recording extends Played {
     this.recorded = recorded;
     this.accounts = [];
     this.count = recorded.t.length;
+    this.steps = recorded.t;
   }
   free() {}
   #nearest(t) {
