@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pendcore as pc
 import pytest
+from pendcore.cli import main
 from pendcore.page import html
 
 pytestmark = pytest.mark.unsanitized
@@ -28,6 +29,12 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, op
     assert page.ask(hidden) == "none"
     assert page.complaints() == []
     assert "right to 0.1 rad to the end" in page.text("trust")
+
+
+def test_the_command_that_wrote_a_page_without_the_core_says_so(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(html, "core_for_browsers", lambda: None)
+    assert main(["show", "-o", str(tmp_path / "run.html")]) == 0
+    assert capsys.readouterr().err.endswith(f"run.html\n{html.WITHOUT_CORE}\n")
 
 
 def test_functions_of_ones_own_are_played_back(opened):

@@ -12,6 +12,7 @@ from pendcore.cli.arguments import add_case_or_solution, solution_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.messages import whole_file
+from pendcore.page.html import why_it_plays_back
 from pendcore.plotting import save_figure
 
 HELP = "see a case move: a page, a film, or a strip of positions"
@@ -70,6 +71,8 @@ def execute(args: argparse.Namespace) -> int:
         with named_if_lost(args.out):
             out = _write(solution, args)
     print(where if out == args.out else f"written to {out}", file=sys.stderr)
+    if out.suffix == ".html" and (told := why_it_plays_back(solution)):
+        print(told, file=sys.stderr)
     if not solution.success:
         print(f"the run is not complete: {solution.message}", file=sys.stderr)
     if args.json:

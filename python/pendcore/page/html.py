@@ -55,10 +55,9 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     """
     case = solution.case()
     scene = solution.scene
-    own = any(effect.description.is_function for effect in scene.effects)
     has_events = bool(solution.events_asked_for())
-    core = None if own else core_for_browsers()
-    told = OWN_FUNCTIONS if own else "" if core is not None else WITHOUT_CORE
+    told = why_it_plays_back(solution)
+    core = None if told else core_for_browsers()
     data = {
         "case": _plain_case(case, solution),
         "hash": "" if has_events else solution.fingerprint,
@@ -86,6 +85,13 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "SCRIPT": f"{{\n{_bundle(PAGE_MODULES)}\n}}",
     }
     return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], _source("page.html"))
+
+
+def why_it_plays_back(solution: Solution) -> str:
+    """Return why the page of a run does not simulate; empty if it does."""
+    if any(effect.description.is_function for effect in solution.scene.effects):
+        return OWN_FUNCTIONS
+    return WITHOUT_CORE if core_for_browsers() is None else ""
 
 
 def _horizon(solution: Solution, *, may_take_long: bool) -> float | None:
