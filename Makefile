@@ -140,6 +140,7 @@ wheel: wasm $(DONE)/build-requirements $(DONE)/wheel-requirements  ## dist/: a w
 # The pages are built from a copy, into which the generated ones are written.
 SITE := build/site
 site: page $(DONE)/site-requirements  ## the documentation as a site: build/site/html/index.html
+	@sh setup/debian_packages.sh ffmpeg
 	rm -rf $(SITE)/source && mkdir -p $(SITE)/source
 	cp -r docs examples cpp tests bench python setup *.md CMakeLists.txt Makefile $(SITE)/source
 	cd $(SITE) && sphinx-build -W --keep-going -q -j auto -d cache -c source/docs/site source/docs html

@@ -1,6 +1,7 @@
-"""The textbook's double pendulum, section 2.1: two rods, released at rest from 45 and 60 degrees.
+"""The textbook's double pendulum, section 2.1: two rods, let go from 45 and 60 degrees.
 
-By ode45, as in the book; without a method, simulate() takes a quicker one for the same accuracy.
+By ode45, as in the book; without a method, simulate() takes a quicker one for the same
+accuracy.
 
 The same in C++: 01_textbook.cpp.
 """
@@ -16,7 +17,8 @@ sol = pc.simulate(
 )
 
 for i in range(2):
-    print(f"q_{i + 1}(5) = {sol.q[-1, i]:.17g} rad, qd_{i + 1}(5) = {sol.qd[-1, i]:.17g} rad/s")
+    q, qd = sol.q[-1, i], sol.qd[-1, i]
+    print(f"q_{i + 1}(5) = {q:.17g} rad, qd_{i + 1}(5) = {qd:.17g} rad/s")
 
 curve_1, curve_2 = sol.plot()
 curve_1.figure.savefig("textbook.png")

@@ -1,4 +1,4 @@
-"""Ask for an error instead of a tolerance, and see what accuracy costs on a scene of your own."""
+"""Ask for an error, not a tolerance, and see what accuracy costs on your own scene."""
 
 from __future__ import annotations
 

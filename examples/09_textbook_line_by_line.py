@@ -1,8 +1,9 @@
-"""Section 2.1 of the textbook, line by line: each MATLAB command, and below it what does the same.
+"""Section 2.1 of the textbook, line by line: the MATLAB commands and their equals.
 
-The MATLAB lines are the book's, marked with %. What stands below them is SymPy, by pendcore.derive
-(`pip install ".[symbolic]"` in a clone), and every result is compared with what the derivation has.
-At the end stand the book's figure, its function file RR.m, and its inline function.
+The MATLAB lines are the book's, marked with %. What stands below them is SymPy, by
+pendcore.derive (`pip install ".[symbolic]"` in a clone), and every result is compared
+with what the derivation has. At the end stand the book's figure, its function file
+RR.m, and its inline function.
 """
 
 from __future__ import annotations
@@ -18,16 +19,17 @@ from pendcore.derive.chain import of_differences
 # %  L1 = 1; L2 = 1; m1 = 1; m2 = 1; g = 9.807;
 # %  t = sym('t','real');
 # MATLAB has numbers from here on; SymPy keeps the symbols, and the numbers come last.
-scene = pc.Scene(links=[pc.Link(mass=1, length=1), pc.Link(mass=1, length=1)], gravity=9.807)
+rod = pc.Link(mass=1, length=1)
+scene = pc.Scene(links=[rod, rod], gravity=9.807)
 book = pc.derive.Derivation(scene)
 s = book.symbols
 (m1, m2), (L1, L2), g = s.masses, s.lengths, s.gravity
 (q1, q2), (qdd1, qdd2) = s.q, s.qdd
-diff = book.chain.velocity  # diff(..., t) of a point: angles are functions of time, rates too
+diff = book.chain.velocity  # diff(..., t) of a point: angles and rates depend on time
 
 
 def same(ours: Iterable[sympy.Expr], derived: Iterable[sympy.Expr]) -> bool:
-    """Whether expressions are one and the same: brought to a normal form, their difference is 0."""
+    """Whether expressions are the same: in a normal form, their difference is 0."""
     return all(of_differences(a - b) == 0 for a, b in zip(ours, derived, strict=True))
 
 
@@ -74,28 +76,35 @@ assert same(F21, [book.equations.solved_forces[force] for force in forces])
 # %  Eq2 = -IC2*alpha2 + cross(rB-rC2,-F21);
 EqA = -IA * alpha1 + cross(rB, F21) + cross(rC1, G1)
 Eq2 = -IC2 * alpha2 + cross((rB[0] - rC2[0], rB[1] - rC2[1]), (-F21[0], -F21[1]))
-assert same((EqA, Eq2), [line.acting - line.inertia for line in book.equations.without_reactions])
+lines = book.equations.without_reactions
+assert same((EqA, Eq2), [line.acting - line.inertia for line in lines])
 
-# %  slist = {diff('q1(t)',t,2), ...};  nlist = {'ddq1', ...};  eq1 = subs(EqA(3),slist,nlist);
+# %  slist = {diff('q1(t)',t,2), ...};  nlist = {'ddq1', ...};
+# %  eq1 = subs(EqA(3),slist,nlist);
 # Nothing to replace: q1, qd1 and qdd1 are symbols of their own from the start.
 # %  sol = solve(eq1,eq2,'ddq1, ddq2');
 sol = sympy.solve([EqA, Eq2], [qdd1, qdd2])
 put_in = dict(zip((qdd1, qdd2), book.accelerations, strict=True))
-left_over = [sympy.fraction(sympy.together(line.subs(put_in)))[0] for line in (EqA, Eq2)]
-assert same(left_over, (0, 0))  # the derivation's solution solves the book's equations
+left_over = [sympy.together(line.subs(put_in)) for line in (EqA, Eq2)]
+numerators = [sympy.fraction(line)[0] for line in left_over]
+assert same(numerators, (0, 0))  # the derivation's solution solves the book's equations
 at_start = {**book.values, q1: pi / 4, q2: pi / 3, s.qd[0]: 0, s.qd[1]: 0}
-print(f"ddq1 = {sol[qdd1].subs(at_start):.6f}, ddq2 = {sol[qdd2].subs(at_start):.6f} rad/s^2")
+ddq1, ddq2 = (sol[one].subs(at_start) for one in (qdd1, qdd2))
+print(f"ddq1 = {ddq1:.6f}, ddq2 = {ddq2:.6f} rad/s^2")
 
 # %  dx2 = sol.ddq1; ... ; dx2dt = char(dx2); ...
 # %  g = inline(sprintf(' [%s;%s;%s;%s]',dx1dt,dx2dt,dx3dt,dx4dt),'t','x');
 Path("inline_function.m").write_text(book.to_octave_inline(), encoding="utf-8")
 
-# %  fid = fopen('RR.m','w+');  fprintf(fid,'function dx = RR(t,x)\n');  ...  fclose(fid);
+# %  fid = fopen('RR.m','w+');
+# %  fprintf(fid,'function dx = RR(t,x)\n');  ...  fclose(fid);
 Path("RR.m").write_text(book.to_octave("RR"), encoding="utf-8")
 
 # %  t0 = 0; tf = 5; time = [0 tf];  x0 = [pi/4; 0; pi/3; 0];
-# %  [t,xs] = ode45(g, time, x0);    and with the function file    [t,xs] = ode45(@RR, time, x0);
-# MATLAB's x is (q1, qd1, q2, qd2). The method is ode45's; its default tolerances are 1e-3 and 1e-6.
+# %  [t,xs] = ode45(g, time, x0);
+# %  [t,xs] = ode45(@RR, time, x0);     the same with the function file
+# MATLAB's x is (q1, qd1, q2, qd2). The method is ode45's; its tolerances are by default
+# 1e-3 and 1e-6.
 run = pc.simulate(scene, (0, 5), [pi / 4, pi / 3], [0, 0], method="ode45")
 print(f"q1(5) = {run.q[-1, 0]:.6f}, q2(5) = {run.q[-1, 1]:.6f} rad")
 

@@ -2,8 +2,9 @@
 //
 //     pendcore derive 10_generated_header.toml --to cpp -o 10_generated_header.hpp
 //
-// and needs nothing but the standard library: `g++ -std=c++17` compiles this. It swings the arm in
-// fixed steps, as a controller would, and books the energy. Prints the same as its Python twin.
+// and needs nothing but the standard library: `g++ -std=c++17` compiles this. It swings
+// the arm in fixed steps, as a controller would, and books the energy. Prints the same
+// as its Python twin.
 #include "10_generated_header.hpp"
 
 #include <cstdio>
@@ -24,7 +25,8 @@ Point moved(const Point& from, const Point& rate, double h) {
 }
 
 Point rate(const Arm& arm, double t, const Point& p) {
-  return {arm.right_hand_side(t, p.y), arm.powers(t, {p.y[0], p.y[1]}, {p.y[2], p.y[3]}).total()};
+  const Arm::Angles q{p.y[0], p.y[1]}, qd{p.y[2], p.y[3]};
+  return {arm.right_hand_side(t, p.y), arm.powers(t, q, qd).total()};
 }
 
 // A step of the classical Runge-Kutta method.
@@ -47,8 +49,9 @@ int main() {
   const Arm::Angles q{p.y[0], p.y[1]}, qd{p.y[2], p.y[3]};
   const auto force = arm.reactions(steps * h, q, qd);
   std::printf("q(5) = %.7f, %.7f rad\n", q[0], q[1]);
-  std::printf("F_01 = (%.6f, %.6f) N, F_12 = (%.6f, %.6f) N\n", force[0].x, force[0].y, force[1].x,
-              force[1].y);
+  std::printf("F_01 = (%.6f, %.6f) N, ", force[0].x, force[0].y);
+  std::printf("F_12 = (%.6f, %.6f) N\n", force[1].x, force[1].y);
   const double gained = arm.energy(steps * h, q, qd).total() - before;
-  std::printf("energy gained %.6f J, brought in by motor and damper %.6f J\n", gained, p.work);
+  std::printf("energy gained %.6f J, ", gained);
+  std::printf("brought in by motor and damper %.6f J\n", p.work);
 }

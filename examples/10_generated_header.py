@@ -1,9 +1,9 @@
-"""The equations of an arm as code of its own, here as a NumPy module; the C++ twin has the header.
+"""The equations of an arm as code of its own: here NumPy, and a header in the C++ twin.
 
     pendcore derive examples/10_generated_header.toml --to python -o arm.py
 
-Both need SymPy: `pip install ".[symbolic]"` in a clone. This writes the module, runs it in the same
-fixed steps as the C++ program, and holds the result against pendcore's own.
+Both need SymPy: `pip install ".[symbolic]"` in a clone. This writes the module, runs it
+in the same fixed steps as the C++ program, and holds the result against pendcore's own.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""A flip map: when the second rod first turns over, and which pixels of that map are true.
+"""A flip map: when the second rod first turns over, and which of its pixels are true.
 
-The case of 11_flip_map.toml, run from a plane of starts. A second ensemble, with another method and
-with last bits moved, says where the map shows the motion and not its rounding errors.
+The case of 11_flip_map.toml, run from a plane of starts. A second ensemble, with
+another method and with last bits moved, says where the map shows the motion and not its
+rounding errors.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import pendcore as pc
 case = pc.read_case(Path(__file__).with_suffix(".toml"))
 over = case.options["events"][0]
 theta = np.radians(np.linspace(-177, 177, 60))  # from hanging
-q0 = pc.angles_from_vertical(np.stack(np.meshgrid(theta, theta, indexing="ij"), axis=-1))
+plane = np.stack(np.meshgrid(theta, theta, indexing="ij"), axis=-1)
+q0 = pc.angles_from_vertical(plane)
 
 turned = pc.ensemble(case.scene, case.t_span, q0, keep=pc.reducers.FirstEvent(over))
 print(turned)

@@ -6,6 +6,7 @@ examples are those of the descriptions, as in the docstrings.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from math import inf
 
@@ -13,7 +14,7 @@ import pendcore as pc
 from effect_sections import COMPILED, MORE
 from pendcore._run.energy import LOSSES
 from pendcore._scene.effect_class import Effect, OwnEffect
-from pendcore._scene.effect_description import CAVEATS, Description
+from pendcore._scene.effect_description import CAVEATS, COLUMNS, Description
 from pendcore.effects import KINDS
 
 BOOKED = {
@@ -61,6 +62,40 @@ def examples(cls: type[Effect]) -> list[Effect]:
     return [eval(call, names) for call in cls.description.calls]
 
 
+LETTERS = {"tau": r"\tau", "phi": r"\varphi", "phid": r"\dot\varphi", "omega": r"\omega",
+           "rho": r"\rho", "phase": r"\psi", "qd": r"\dot q"}  # fmt: skip
+FUNCTIONS = {"sin": r"\sin", "exp": r"\exp", "sgn": r"\operatorname{sgn}"}
+WORDS = {"at", "an", "is", "of", "or", "to"}
+_WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?([+-](?=[ ,]|$))?")
+_TEXTS = re.compile(r"(?<=\}) *\\text\{ ")
+
+
+def latex(law: str) -> str:
+    """Return a law, which the core tells in letters, in LaTeX."""
+
+    def written(found: re.Match[str]) -> str:
+        name, digit, index, sign = found.groups()
+        if name in FUNCTIONS:
+            return FUNCTIONS[name]
+        if name not in LETTERS and (len(name) > 2 or name in WORDS):
+            return rf"\text{{ {name} }}{sign or ''}"
+        below = index or digit
+        letter = LETTERS.get(name, name)
+        return letter + (f"_{{{below}}}" if below else "") + (f"^{{{sign}}}" if sign else "")
+
+    bars = re.sub(
+        r"abs\(([^()]+)\)", r"\\lvert \1\\rvert", law.replace(" | ", r" \;\;\text{or}\;\; ")
+    )
+    told = re.sub(r"(?<![\\{])\b" + _WORD.pattern, written, bars)
+    told = re.sub(r"\^(\w)", r"^{\1}", told).replace("  ", r" \quad ")
+    return (
+        _TEXTS.sub(r"\\text{", told)
+        .replace("<=", r"\le")
+        .replace("+=", r"\mathrel{+}=")
+        .replace("+-", r"\pm")
+    )
+
+
 def _page(cls: type[Effect]) -> str:
     return "\n".join(_sections(cls.description, cls))
 
@@ -73,7 +108,9 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield ""
     yield told.sentence
     yield ""
-    yield f"    {told.law}"
+    yield "$$"
+    yield latex(told.law)
+    yield "$$"
     yield ""
     if told.account in CAVEATS:
         yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
@@ -129,6 +166,9 @@ def _python(effect: Effect, cls: type[Effect]) -> str:
     shown = cls.description.calls[0] if isinstance(effect, OwnEffect) else repr(effect)
     for name in pc.effects.__all__:
         shown = shown.replace(f"{name}(", f"pc.effects.{name}(")
+    if len(f"effect = {shown}") > COLUMNS:
+        call, _, inner = shown.partition("(")
+        shown = f"{call}(\n    {inner[:-1]}\n)"
     return f"""\
 import pendcore as pc
 

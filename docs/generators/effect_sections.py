@@ -23,7 +23,7 @@ def damp(t, n, q, qd, Q, data):  # with numba: numba.cfunc(signature), at full s
 
 
 rod = pc.Link(mass=1.0, length=1.0)
-effect = pc.effects.CompiledUser(damp)  # or the address as an int; it keeps `damp` alive
+effect = pc.effects.CompiledUser(damp)  # or an address, an int; it keeps `damp` alive
 scene = pc.Scene(links=[rod, rod], effects=[effect])
 sol = pc.simulate(scene, q0=[0.5, 1.0], t_span=(0, 1), ledger=True)
 print(sol.energy().ledger)
@@ -44,7 +44,8 @@ A function of C or C++ comes from a library of your own,
 `CompiledUser(ctypes.CDLL("./laws.so").damp)`:
 
 ```cpp
-extern "C" void damp(double t, int n, const double* q, const double* qd, double* Q, void* data) {
+extern "C" void damp(double t, int n, const double* q, const double* qd, double* Q,
+                     void* data) {
   for (int i = 0; i < n; ++i) Q[i] -= 0.1 * qd[i];
 }
 ```

@@ -4,7 +4,8 @@ The pages are the Markdown files of docs/, as they read in the repository. Their
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
 examples from their files (example_pages.py), those of the notebooks from their cells
-(notebook_pages.py). The first page shows a run alive (live_pages.py).
+(notebook_pages.py), those of the gallery by running its files (gallery_pages.py). The first page
+shows a run alive (live_pages.py). Colours and sizes are the house's (house.css).
 Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
@@ -19,11 +20,13 @@ sys.path.insert(0, str(HERE))
 
 import cpp_reference  # noqa: E402
 import example_pages  # noqa: E402
+import gallery_pages  # noqa: E402
 import inventories  # noqa: E402
 import live_pages  # noqa: E402
 import notebook_pages  # noqa: E402
 import pendcore  # noqa: E402
 import python_reference  # noqa: E402
+from pendcore.plotting import css_variables  # noqa: E402
 
 project = "pendcore"
 author = "pendcore maintainers"
@@ -39,6 +42,7 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_design",
     "executed",
+    "gallery_pages",
     "repository_pages",
 ]
 exclude_patterns = ["site", "generators", "records", "figures"]
@@ -61,7 +65,9 @@ intersphinx_mapping = inventories.write(ROOT / "inventories")
 html_theme = "pydata_sphinx_theme"
 html_title = "pendcore"
 html_static_path = ["_static"]
-html_css_files = ["site.css"]
+html_css_files = ["house.css", "site.css"]
+html_favicon = "_static/favicon.svg"
+html_context = {"default_mode": "auto"}
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
@@ -71,13 +77,16 @@ html_theme_options = {
     "header_links_before_dropdown": 6,
     "show_toc_level": 2,
     "show_prev_next": True,
+    "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "gallery/index": []},
     "footer_start": ["copyright"],
     "footer_end": [],
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
 
+(HERE / "_static/house.css").write_text(css_variables(when_dark='html[data-theme="dark"]'))
 live_pages.write(HERE / "_static")
+gallery_pages.write(ROOT / "examples/gallery", ROOT / "docs/gallery", HERE)
 python_reference.write(ROOT / "docs/reference/python")
 notebook_pages.write(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
 example_pages.write(ROOT / "examples", ROOT / "docs/examples")

@@ -93,8 +93,8 @@ def first_line(thing: Any) -> str:
 
 def page_of(path: str, thing: Any) -> str:
     name = path.rpartition(".")[2]
-    directive = "autofunction" if inspect.isroutine(thing) else "autoclass"
+    directive = "autoclass" if inspect.isclass(thing) else "autofunction"
     lines = [name, "=" * len(name), "", f".. {directive}:: {path}"]
-    if directive == "autoclass" and not issubclass(thing, BaseException):
+    if inspect.isclass(thing) and not issubclass(thing, BaseException):
         lines += ["   :members:", "   :inherited-members: list, tuple, object, int, Mapping"]
     return "\n".join(lines) + "\n"

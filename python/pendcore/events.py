@@ -43,7 +43,7 @@ class Event(Parametrized):
 
     Examples
     --------
-    >>> bottom = pc.events.LinkAngle(1, np.pi / 2, direction=1, terminal=True, name="bottom")
+    >>> bottom = pc.events.LinkAngle(1, np.pi / 2, direction=1, terminal=True)
     >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[bottom])
     >>> f"{sol.status} at {sol.t[-1]:.3f} s"
     'event at 0.653 s'
@@ -202,7 +202,7 @@ class Function(Event, OfFunction):
 
     Examples
     --------
-    >>> together = pc.events.Function(lambda t, q, qd: qd[0] - qd[1])  # joint 2 is at rest
+    >>> together = pc.events.Function(lambda t, q, qd: qd[0] - qd[1])  # joint 2 rests
     >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, events=[together])
     >>> [round(event.t, 3) for event in sol.events[0][:2]]  # s
     [0.387, 0.773]

@@ -94,9 +94,8 @@ class Extremes(Reducer):
 
     Examples
     --------
-    >>> found = pc.ensemble(
-    ...     pc.Scene.textbook(), (0, 5), [[0.5, 1.0], [1.5, 1.5]], keep=pc.reducers.Extremes()
-    ... )
+    >>> scene, starts = pc.Scene.textbook(), [[0.5, 1.0], [1.5, 1.5]]
+    >>> found = pc.ensemble(scene, (0, 5), starts, keep=pc.reducers.Extremes())
     >>> np.ptp(found["extremes"], axis=1).round(2)[:, :2]  # rad, swings of both links
     array([[2.  , 2.67],
            [0.14, 0.21]])

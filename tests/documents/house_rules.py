@@ -6,6 +6,7 @@ A rule takes the root of a source tree and yields one sentence for each breach t
 from __future__ import annotations
 
 import ast
+import json
 import re
 import statistics
 import sys
@@ -302,6 +303,25 @@ def files_are_short(root: Path) -> Iterator[str]:
         yield "more than one file in twenty has more than 300 lines"
 
 
+def shown_code(path: Path) -> str:
+    """Return the lines of code that a reader of a page, an example or a notebook sees."""
+    text = path.read_text()
+    if path.suffix == ".md":
+        return "".join(re.split(r"^ *```.*$", text, flags=re.MULTILINE)[1::2])
+    if path.suffix == ".ipynb":
+        cells = json.loads(text)["cells"]
+        return "\n".join("".join(x["source"]) for x in cells if x["cell_type"] == "code")
+    return text
+
+
+def shown_code_is_narrow(root: Path) -> Iterator[str]:
+    examples = files(root, {".py", ".cpp", ".toml", ".ipynb"}, "examples")
+    for path in [*sorted(root.glob("*.md")), *files(root, {".md"}, "docs"), *examples]:
+        for line in shown_code(path).splitlines():
+            if len(line) > 88:
+                yield f"{path.relative_to(root)} shows more than 88 columns: {line.strip()}"
+
+
 def kernels_call_no_libm(root: Path) -> Iterator[str]:
     """Only what is correctly rounded (sqrt, fma, ...) gives the same bits on every machine."""
     call = re.compile(rf"(?<![\w.>:])(?:std::|::|__builtin_)?(?:{LIBM})[fl]?\s*\(")
@@ -362,6 +382,7 @@ RULES: list[Rule] = [
     extras_stand_on_public_names,
     names_say_what_a_file_holds,
     files_are_short,
+    shown_code_is_narrow,
     kernels_call_no_libm,
     matrices_own_memory_of_malloc,
     builds_use_no_flag_that_changes_bits,

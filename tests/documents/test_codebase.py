@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path
 
@@ -25,6 +26,8 @@ CASES = "python/pendcore/_cases/archive.py"
 LAWS = "python/pendcore/derive/laws.py"
 SCENE = '#include "pendcore/scene.hpp"'
 WORKFLOW = ".github/workflows/a.yml"
+WIDE = "x = " + 85 * "1"
+CELLS = json.dumps({"cells": [{"cell_type": "code", "source": ["x = 1\n", WIDE]}]})
 # A rule, a file that breaks it and what the file says, and what the rule then says.
 BREACHES = [
     (rules.includes_follow_the_flow, f"{CORE}/integrate/a.hpp", SCENE, "(integrate) includes"),
@@ -43,6 +46,10 @@ BREACHES = [
     (rules.imports_go_down, API, "if TYPE_CHECKING:\n    import pendcore._run", "types alone"),
     (rules.extras_stand_on_public_names, LAWS, "import pendcore._run", "which is private"),
     (rules.imports_form_no_circle, LAWS, "import pendcore.derive.laws", "a circle of imports"),
+    (rules.shown_code_is_narrow, "README.md", f"```python\n{WIDE}\n```\n", "88 columns: x = 1"),
+    (rules.shown_code_is_narrow, "docs/a/b.md", f"* a list\n\n  ```\n  {WIDE}\n  ```\n", "b.md"),
+    (rules.shown_code_is_narrow, "examples/cases/a.toml", WIDE, "a.toml shows more"),
+    (rules.shown_code_is_narrow, "examples/notebooks/a.ipynb", CELLS, "a.ipynb shows more"),
     (rules.kernels_call_no_libm, f"{CORE}/dynamics/a.hpp", "auto s = std::sin(q);", "std::sin"),
     (rules.kernels_call_no_libm, f"{CORE}/integrate/a.hpp", "-__builtin_expf (y)", "expf"),
     (rules.matrices_own_memory_of_malloc, f"{CORE}/a.cpp", "Eigen::MatrixXd M;", "MatrixXd"),

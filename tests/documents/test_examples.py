@@ -23,7 +23,7 @@ SAYS = {
     ),
     "06_events": (
         "from 100 degrees: turns over at t = 6.543738 s",
-        "link 2 at  20 degrees: 468 points, up to 7.93 rad/s",
+        "link 2 at  20 degrees: 1876 points, up to 7.93 rad/s",
     ),
     "08_accuracy": (
         "asked 1.0e-08, achieved",

@@ -81,7 +81,7 @@ def forces():
     rows = zip(sol.t, sol.accelerations(), sol.reactions()[:, 0], energy.total,
                energy.ledger.motor, strict=True)  # fmt: skip
     return "".join(
-        f"{t:.1f} s: qdd {a:8.4f} {b:8.4f}, F_01 {x:8.4f} {y:8.4f}, "
+        f"{t:.1f} s: qdd {a:7.4f} {b:7.4f}, F_01 {x:8.4f} {y:8.4f}, "
         f"T + V {total:9.5f} J, motor {motor:8.5f} J\n"
         for t, (a, b), (x, y), total, motor in rows
     )

@@ -48,7 +48,8 @@ class Case:
 
     Examples
     --------
-    >>> case = pc.Case(scene=pc.Scene.textbook(), q0=0.5, t_span=(0, 5), options={"rtol": 1e-12})
+    >>> scene = pc.Scene.textbook()
+    >>> case = pc.Case(scene=scene, q0=0.5, t_span=(0, 5), options={"rtol": 1e-12})
     >>> case.q0, case.simulate().success
     ((0.5, 0.5), True)
     >>> pc.read_case(case.to_toml()) == case

@@ -48,10 +48,8 @@ class Ensemble:
 
     Examples
     --------
-    >>> masses = np.linspace(0.5, 1.5, 5)
-    >>> found = pc.ensemble(
-    ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"link[2].mass": masses}
-    ... )
+    >>> scene, masses = pc.Scene.textbook(), np.linspace(0.5, 1.5, 5)
+    >>> found = pc.ensemble(scene, (0, 5), [0.5, 1.0], vary={"link[2].mass": masses})
     >>> found.q.shape, found.success.all()
     ((5, 2), np.True_)
     >>> one = found.member(3)  # a Solution, with the same bits
@@ -138,9 +136,8 @@ class Ensemble:
 
         Examples
         --------
-        >>> found = pc.ensemble(
-        ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"gravity": [9.8, 1.62]}
-        ... )
+        >>> scene, vary = pc.Scene.textbook(), {"gravity": [9.8, 1.62]}
+        >>> found = pc.ensemble(scene, (0, 5), [0.5, 1.0], vary=vary)
         >>> found.energy().total.round(4)
         array([-11.1708,  -1.8466])
         """
@@ -237,8 +234,8 @@ class Ensemble:
 
         Examples
         --------
-        >>> starts = [[0.5, np.nan]]
-        >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), starts, on_failure="ignore")
+        >>> scene, starts = pc.Scene.textbook(), [[0.5, np.nan]]
+        >>> found = pc.ensemble(scene, (0, 5), starts, on_failure="ignore")
         >>> found.message(0)
         'q0[1] = nan: must be finite (rad)'
         """
@@ -264,12 +261,11 @@ class Ensemble:
 
         Examples
         --------
-        >>> short = pc.ensemble(
-        ...     pc.Scene.textbook(), q0=[[0.1, 0.1], [1.5, 1.5]], t_span=(0, 9), max_steps=60,
-        ...     on_failure="ignore",
-        ... )
-        >>> short.status, short.rerun(max_steps=1000).status
-        (array(['max_steps', 'finished'], dtype='<U14'), array(['finished'], dtype='<U14'))
+        >>> scene, starts = pc.Scene.textbook(), [[0.1, 0.1], [1.5, 1.5]]
+        >>> how = {"max_steps": 60, "on_failure": "ignore"}
+        >>> short = pc.ensemble(scene, (0, 9), starts, **how)
+        >>> print(short.status, short.rerun(max_steps=1000).status)
+        ['max_steps' 'finished'] ['finished']
         """
         from pendcore._ensemble.whole_run import execution, run_ensemble
 
@@ -373,7 +369,8 @@ class Ensemble:
 
         Examples
         --------
-        >>> q0 = np.stack(np.meshgrid([0.5, 1.0, 1.5], [0.0, 1.0], indexing="ij"), axis=-1)
+        >>> plane = np.meshgrid([0.5, 1.0, 1.5], [0.0, 1.0], indexing="ij")
+        >>> q0 = np.stack(plane, axis=-1)
         >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), q0)
         >>> [image] = found.plot("q[2]")
         >>> image.axes.get_xlabel()
@@ -418,9 +415,8 @@ class Ensemble:
 
         Examples
         --------
-        >>> found = pc.ensemble(
-        ...     pc.Scene.textbook(), q0=[0.5, 1.0], t_span=(0, 5), vary={"gravity": [9.8, 1.62]}
-        ... )
+        >>> scene, vary = pc.Scene.textbook(), {"gravity": [9.8, 1.62]}
+        >>> found = pc.ensemble(scene, (0, 5), [0.5, 1.0], vary=vary)
         >>> found.to_xarray().sizes["member_0"]
         2
         """

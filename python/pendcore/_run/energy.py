@@ -31,7 +31,8 @@ class Ledger(Mapping[str, Floats]):
 
     Examples
     --------
-    >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.1)])
+    >>> damper = pc.effects.ViscousJoint(joint=1, damping=0.1)
+    >>> scene = pc.Scene.textbook().replace(effects=[damper])
     >>> sol = pc.simulate(scene, (0, 5), 0.5, ledger=True)
     >>> ledger = sol.energy().ledger
     >>> [*ledger], f"{ledger.viscous[-1]:.3f} J"

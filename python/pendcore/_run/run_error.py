@@ -19,8 +19,9 @@ class RunError(RuntimeError):
 
     Examples
     --------
+    >>> scene = pc.Scene.textbook()
     >>> try:
-    ...     pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, max_steps=10, on_failure="raise")
+    ...     pc.simulate(scene, (0, 5), 0.5, max_steps=10, on_failure="raise")
     ... except pc.RunError as ended:
     ...     print(ended.solution.status, len(ended.solution.t))
     max_steps 11

@@ -463,8 +463,8 @@ class Solution:
         --------
         >>> sol = pc.Case.textbook().simulate()
         >>> error = sol.estimate_error()
-        >>> f"{error.angle.max():.0e} rad, {error.position.max():.0e} of the total length"
-        '5e-09 rad, 2e-09 of the total length'
+        >>> f"{error.angle.max():.0e} rad, {error.position.max():.0e} of the length"
+        '5e-09 rad, 2e-09 of the length'
         """
         from pendcore._accuracy.estimate import error_of
 
@@ -739,8 +739,8 @@ class Solution:
         --------
         >>> sol = pc.Case.textbook().simulate()
         >>> first, second = sol.plot(label="section 2.1")
-        >>> second.axes.get_ylabel()  # first.axes.figure.savefig("angles.png") keeps the figure
-        'q2 (deg)'
+        >>> second.axes.get_ylabel()  # .axes.figure.savefig("angles.png") keeps it
+        '$q_{2}$ (deg)'
         >>> sol.plot("path")[0].axes.get_ylabel()
         'y (m), downwards'
         """

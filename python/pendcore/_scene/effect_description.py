@@ -117,6 +117,8 @@ class Description(NamedTuple):
         return tuple(x for x in self.examples.splitlines() if x.startswith(f"{self.name}("))
 
 
+COLUMNS = 88
+"""As many as a page shows of a line of code."""
 CAVEATS = {
     "dry": "A joint that friction brings to rest sticks: its rate is 0.0, exactly, until the "
     "torque that holds it exceeds `static`. A run in which nothing can move any more has the "
@@ -191,6 +193,13 @@ def type_in_words(parameter: Parameter) -> str:
     return f"{word}, optional" if parameter.optional else f"{word}, default {parameter.default!r}"
 
 
+def law_in_lines(law: str) -> str:
+    """Return a law as a block of code, broken before an alternative or after a comma."""
+    whole = re.sub(r"(?<!,)(?<!, ) (?!\|)", "\N{NO-BREAK SPACE}", law)
+    broken = fill(whole, COLUMNS, initial_indent="    ", subsequent_indent="        ")
+    return broken.replace("\N{NO-BREAK SPACE}", " ")
+
+
 def docstring(described: Description) -> str:
     """Return the docstring of a class."""
     return "\n\n".join(_sections(described))
@@ -199,8 +208,7 @@ def docstring(described: Description) -> str:
 def _sections(described: Description) -> Iterator[str]:
     yield described.sentence
     if described.law:
-        inner = fill(described.law, 92, initial_indent="    ", subsequent_indent="        ")
-        yield f"Law::\n\n{inner}"
+        yield f"Law::\n\n{law_in_lines(described.law)}"
     parameters = (
         f"{parameter.name} : {type_in_words(parameter)}\n"
         + fill(_meaning(parameter), 92, initial_indent="    ", subsequent_indent="    ")
@@ -250,13 +258,20 @@ def _part_example(name: str) -> Iterator[str]:
 
 
 def _assignment(call: str, parts: Iterable[str] = ()) -> str:
-    """Return the line that makes an effect, or three where it is long."""
+    """Return the line that makes an effect, or more where it is long."""
     for part in parts:
         call = call.replace(f"={part}(", f"=pc.effects.{part}(")
-    if len(call) > 64:
-        head, _, inner = call.partition("(")
-        call = f"{head}(\n...     {inner[:-1]}\n... )"
-    return f">>> effect = pc.effects.{call}"
+    return f">>> effect = {_broken(f'pc.effects.{call}', COLUMNS - 13)}"
+
+
+def _broken(call: str, room: int, indent: str = "... ") -> str:
+    """Return a call, its arguments on lines of their own where there is no room for it."""
+    if len(call) <= room:
+        return call
+    head, _, inner = call.partition("(")
+    further = f"{indent}    "
+    inner = _broken(inner[:-1], COLUMNS - len(further), further)
+    return f"{head}(\n{further}{inner}\n{indent})"
 
 
 def _meaning(parameter: Parameter) -> str:

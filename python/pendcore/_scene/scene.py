@@ -174,7 +174,8 @@ class Scene:
 
         Examples
         --------
-        >>> scene = pc.Scene.textbook().replace(effects=[pc.effects.ViscousJoint(2, damping=0.1)])
+        >>> damper = pc.effects.ViscousJoint(joint=2, damping=0.1)
+        >>> scene = pc.Scene.textbook().replace(effects=[damper])
         >>> known = scene.parameters()
         >>> known["gravity"], known["link[1].mass"], known["effect[1].damping"]
         (9.807, 1.0, 0.1)
@@ -206,7 +207,8 @@ class Scene:
 
         Examples
         --------
-        >>> longer = pc.Scene.textbook().with_parameters({"link[2].length": 1.5, "gravity": 1.62})
+        >>> changed = {"link[2].length": 1.5, "gravity": 1.62}
+        >>> longer = pc.Scene.textbook().with_parameters(changed)
         >>> longer.links[1], longer.gravity
         (Link(mass=1.0, length=1.5), 1.62)
         """
@@ -253,7 +255,7 @@ class Scene:
         Examples
         --------
         >>> scene = pc.Scene.textbook()
-        >>> scene.accelerations(0.0, q=[0.0, 0.0], qd=[0.0, 0.0]).round(3)  # let go, horizontal
+        >>> scene.accelerations(0.0, q=[0.0, 0.0], qd=[0.0, 0.0]).round(3)  # let go
         array([12.609, -4.203])
         >>> scene.accelerations([0.0, 1.0], q=np.zeros((2, 2)), qd=[0.0, 0.0]).shape
         (2, 2)
@@ -279,7 +281,8 @@ class Scene:
 
         Examples
         --------
-        >>> by_q, by_qd = pc.Scene.textbook().jacobian(0.0, q=[np.pi / 2, np.pi / 2], qd=[0.0, 0.0])
+        >>> hanging, scene = [np.pi / 2, np.pi / 2], pc.Scene.textbook()
+        >>> by_q, by_qd = scene.jacobian(0.0, q=hanging, qd=[0.0, 0.0])
         >>> np.sqrt(-np.linalg.eigvals(by_q)).round(3)  # rad/s, about hanging
         array([2.68 , 7.188])
         """
@@ -295,7 +298,8 @@ class Scene:
 
         Examples
         --------
-        >>> pc.Scene.textbook().positions(0.0, [0.0, np.pi / 2]).round(3)  # pivot, joint 2, tip
+        >>> scene = pc.Scene.textbook()
+        >>> scene.positions(0.0, [0.0, np.pi / 2]).round(3)  # pivot, joint 2, tip
         array([[0., 0.],
                [1., 0.],
                [1., 1.]])
@@ -325,7 +329,8 @@ class Scene:
 
         Examples
         --------
-        >>> hanging = pc.Scene.textbook().reactions(0.0, [np.pi / 2, np.pi / 2], [0.0, 0.0])
+        >>> scene = pc.Scene.textbook()
+        >>> hanging = scene.reactions(0.0, [np.pi / 2, np.pi / 2], [0.0, 0.0])
         >>> hanging[:, 1].round(3)  # upwards, and y points down
         array([-19.614,  -9.807])
         """
@@ -341,7 +346,8 @@ class Scene:
 
         Examples
         --------
-        >>> kinetic, potential = pc.Scene.textbook().energy(0.0, [0.0, np.pi / 2], [2.0, 0.0])
+        >>> scene = pc.Scene.textbook()
+        >>> kinetic, potential = scene.energy(0.0, [0.0, np.pi / 2], [2.0, 0.0])
         >>> f"{kinetic:.3f} J, {potential:.4f} J"
         '2.667 J, -4.9035 J'
         """
@@ -392,7 +398,8 @@ class Scene:
 
         Examples
         --------
-        >>> float(pc.Scene.textbook().distances([0.0, 0.0], [0.0, np.pi]))  # the tip moves by 2 m
+        >>> scene = pc.Scene.textbook()
+        >>> float(scene.distances([0.0, 0.0], [0.0, np.pi]))  # the tip moves by 2 m
         1.0
         """
         q, r = np.asarray(q, dtype=np.float64), np.asarray(reference, dtype=np.float64)
@@ -450,7 +457,8 @@ class Scene:
 
         Examples
         --------
-        >>> shaken = pc.effects.DrivenPivot(y=pc.effects.Sinusoid(0.01, angular_frequency=350.0))
+        >>> y = pc.effects.Sinusoid(amplitude=0.01, angular_frequency=350.0)
+        >>> shaken = pc.effects.DrivenPivot(y=y)
         >>> pc.Scene.textbook().replace(effects=[shaken]).fastest_drive()
         350.0
         """
@@ -493,7 +501,8 @@ class Scene:
 
         Examples
         --------
-        >>> "payload" in [absence.kind for absence in pc.Scene.textbook().not_simulated()]
+        >>> scene = pc.Scene.textbook()
+        >>> "payload" in [absence.kind for absence in scene.not_simulated()]
         True
         """
         from pendcore.explanation.explain import absent

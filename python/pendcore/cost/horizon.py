@@ -87,7 +87,8 @@ def horizon_work(
     Examples
     --------
     >>> scene = pc.Scene.textbook()
-    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=[1e-3, 1e-9])
+    >>> rtols = [1e-3, 1e-9]
+    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=rtols)
     >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
     ['1e-03: 8 s', '1e-09: 18 s']
     """

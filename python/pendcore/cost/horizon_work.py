@@ -71,7 +71,8 @@ class HorizonWork:
     Examples
     --------
     >>> scene = pc.Scene.textbook()
-    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=[1e-3, 1e-9])
+    >>> rtols = [1e-3, 1e-9]
+    >>> work = pc.horizon_work(scene, (0, 40), 0.0, methods="taylor", rtols=rtols)
     >>> f"a digit more is worth {work.seconds_a_digit:.1f} s"
     'a digit more is worth 2.5 s'
     """

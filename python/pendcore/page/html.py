@@ -54,7 +54,6 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     ``title`` is the headline; without one, the page has the name of the run.
     """
     case = solution.case()
-    scene = solution.scene
     has_events = bool(solution.events_asked_for())
     told = why_it_plays_back(solution)
     core = None if told else core_for_browsers()

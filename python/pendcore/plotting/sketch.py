@@ -133,7 +133,7 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
     corners = at + np.array([[0.0, 0.0], [-a, -b], [a, -b]])
     base, hatch = at + np.array([[-2 * a, -b], [2 * a, -b]]), np.array([0.55 * a, -0.39 * b])
-    on.axes.add_patch(Polygon(corners, ec=on.theme.ink, lw=1.1))
+    on.axes.add_patch(Polygon(corners, facecolor=on.theme.ground, ec=on.theme.ink, lw=1.1))
     on.axes.plot(*base.T, color=on.theme.ink, lw=1.4)
     for k in np.linspace(-1.75, 1.75, 8):
         start = at + np.array([k * a, -b])

@@ -12,10 +12,9 @@ import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import Floats, number, positive, text
-from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot, grid
-from pendcore.plotting.curve import curve_of
+from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot
+from pendcore.plotting.film_curves import TYPICAL, GrowingCurves, panels_of
 from pendcore.plotting.frames import Moves, frame_times, moves_of
-from pendcore.plotting.over_time import draw_angles, draw_energies, draw_force_sizes
 from pendcore.plotting.poses import draw_scale
 from pendcore.plotting.style import Theme, applied, in_legend, keep_style, theme_of
 
@@ -30,9 +29,8 @@ HEIGHT = 4.5
 LETTERS, CLOCK = 14.0, 22.0
 """Points: a film 320 pixels wide has them 8 and 12 pixels high."""
 _LETTERING = {"font.size": LETTERS, "legend.handlelength": 0.7, "legend.columnspacing": 0.8}
-_LONGEST, _SHORTEST, _TYPICAL = 0.4, 0.14, 95
+_LONGEST, _SHORTEST = 0.4, 0.14
 """The lengths of arrows as shares of the total length; the longest from this percentile on."""
-_MOST_PANELS = 3
 _TAIL = 24
 """The trace fades in so many parts."""
 
@@ -112,8 +110,9 @@ class Stage:
         last_right = [_last_right_frame(one, self.times, choices.horizon) for one in solutions]
         with applied(_LETTERING):
             self.figure = new_figure()
-            scenes, panels = _layout(self.figure, dense, choices)
-            self._curves = _Curves(dense, panels, choices)
+            kinds = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
+            scenes, panels = _layout(self.figure, len(dense), sum(kinds.values()), choices)
+            self._curves = GrowingCurves(dense, kinds, panels)
             arrows = [_arrows(one, moves) if choices.reactions else None for one in moves]
             for axis in scenes:
                 _frame_scene(axis, moves, [one for one in arrows if one is not None])
@@ -167,10 +166,15 @@ class _Player:
         alpha = np.linspace(0.05, 0.8, _TAIL)
         self._trace = LineCollection([], linewidths=1.8, alpha=alpha, capstyle="butt", zorder=2)
         axis.add_collection(self._trace, autolim=False)
-        how: dict[str, Any] = {"linewidth": 6.0, "solid_capstyle": "round", "zorder": 3}
+        slim = min(1.0, 12 / len(colors))  # where there are many links
+        how: dict[str, Any] = {
+            "linewidth": max(6 * slim**0.5, 3.0),
+            "solid_capstyle": "round",
+            "zorder": 3,
+        }
         self._links = [axis.plot([], [], color=color, **how)[0] for color in colors]
         ink = self._theme.ink
-        (self._joints,) = axis.plot([], [], "o", color=ink, markersize=6.5, zorder=4)
+        (self._joints,) = axis.plot([], [], "o", color=ink, markersize=6.5 * slim, zorder=4)
         self.artists: list[Artist] = [self._trace, *self._links, self._joints]
         self._name: Any = None
         if arrows is not None:
@@ -241,79 +245,30 @@ class _Player:
         side = 1.0 if along[0] >= 0 else -1.0
         if not left < tip[0] + side * (wide + line) < right:
             side = -side
-        at = tip + np.array([0.5 * side * line, 0.0])
-        while any((np.abs(at - other) < [wide, 0.99 * line]).all() for other in taken):
-            at[1] += line if along[1] >= 0 else -line
-        taken.append(at)
-        self._name.set_position(at)
+        begin = tip[0] + 0.5 * side * line
+        left, right = sorted([begin, begin + side * wide])
+        height = tip[1]
+        while any(
+            left < other[1] and other[0] < right and abs(height - other[2]) < 0.99 * line
+            for other in taken
+        ):
+            height += line if along[1] >= 0 else -line
+        taken.append(np.array([left, right, height]))
+        self._name.set_position((begin, height))
         self._name.set_ha("left" if side > 0 else "right")
 
 
-class _Curves:
-    """The curves beside or below the chain, which grow with time."""
-
-    def __init__(self, runs: Sequence[Solution], axes: Sequence[Axes], choices: Choices) -> None:
-        kinds = _panels(runs, choices) if len(axes) else {}
-        begin = 0
-        for kind, rows in kinds.items():
-            own, begin = list(axes[begin : begin + rows]), begin + rows
-            asked = Request(solution=runs[0], ax=own)
-            if kind == "energy":
-                draw_energies(asked)
-            elif kind == "reactions":
-                draw_force_sizes(asked, _TYPICAL)
-            elif len(runs) == 1:
-                draw_angles(asked)
-            else:
-                _draw_last_angles(runs, own[0])
-        self._lines = [line for axis in axes for line in axis.lines]
-        self._data = [np.array(line.get_data()) for line in self._lines]
-        self._direction = 1.0 if runs[0].t_reached >= runs[0].t_span[0] else -1.0
-        ink = [theme_of(axis).ink for axis in axes]
-        self._now = [axis.axvline(color=ink[0], linewidth=1.0) for axis in axes]
-        for axis, line in zip(axes, self._now, strict=True):
-            line.set_xdata([axis.get_xlim()[0]] * 2)
-        self.artists: list[Artist] = [*self._lines, *self._now]
-
-    def show(self, time: float) -> None:
-        """Let the curves end at a time, s."""
-        for line, (t, values) in zip(self._lines, self._data, strict=True):
-            until = int(np.searchsorted(self._direction * t, self._direction * time, "right"))
-            line.set_data(t[:until], values[:until])
-        for line in self._now:
-            line.set_xdata([time, time])
-
-
-def _panels(runs: Sequence[Solution], choices: Choices) -> dict[str, int]:
-    """Return which curves a film shows, and on how many axes."""
-    kinds = {"energy": 1} if choices.energy else {}
-    kinds |= {"reactions": 1} if choices.reactions and len(runs) == 1 else {}
-    n = len(runs[0].scene.links)
-    return kinds or {"angles": n if len(runs) == 1 and n <= _MOST_PANELS else 1}
-
-
-def _draw_last_angles(runs: Sequence[Solution], axis: Axes) -> None:
-    """Draw the angle of the last link of each run, deg."""
-    theme = theme_of(axis)
-    for k, one in enumerate(runs):
-        curve = curve_of(one)
-        axis.plot(curve.t, np.rad2deg(curve.q[:, -1]), color=theme.runs[k % len(theme.runs)])
-    axis.set(xlabel="t (s)", ylabel=f"$q_{{{len(runs[0].scene.links)}}}$ (deg)")
-    axis.margins(x=0)
-    grid(axis)
-
-
 def _colors(theme: Theme, k: int, links: int, *, is_alone: bool) -> list[str]:
-    """Return the colours of the links of run k: their own if it is alone, else that of the run."""
+    """Return the colours of the links of run k: their own if it is alone and they are few."""
     if is_alone:
-        return [theme.links[i % len(theme.links)] for i in range(links)]
+        return list(theme.links[:links]) if links <= len(theme.links) else [theme.blue] * links
     return [theme.runs[k % len(theme.runs)]] * links
 
 
 def _arrows(moves: Moves, runs: Sequence[Moves]) -> Floats:
     """Return the arrows of the forces, m, (k, n, 2): neither so long nor so short as they are."""
     every = np.concatenate([np.hypot(*np.moveaxis(x.reactions, -1, 0)).ravel() for x in runs])
-    typical = float(np.percentile(every, _TYPICAL)) or 1.0
+    typical = float(np.percentile(every, TYPICAL)) or 1.0
     sizes = np.hypot(*np.moveaxis(moves.reactions, -1, 0))[..., np.newaxis]
     longest, shortest = np.array([_LONGEST, _SHORTEST]) * max(x.total_length for x in runs)
     lengths = np.clip(longest * sizes / typical, shortest, longest) * (sizes > 1e-6 * typical)
@@ -330,16 +285,15 @@ def _distance(spot: Floats, places: Floats) -> float:
 
 
 def _layout(
-    figure: Figure, runs: Sequence[Solution], choices: Choices
+    figure: Figure, count: int, rows: int, choices: Choices
 ) -> tuple[list[Axes], list[Axes]]:
-    """Return the axes of the chains, which fill their part of the figure, and those of curves.
+    """Return the axes of ``count`` chains, which fill their part of the figure, and of curves.
 
     In a wide frame the curves stand beside a square stage. In another they stand below, where they
     are asked for; so they do where chains are side by side.
     """
     width, height = figure.get_size_inches()
     is_wide = width > 1.5 * height and not choices.beside
-    rows = sum(_panels(runs, choices).values())
     stage: Any = figure
     panels: list[Axes] = []
     if is_wide or choices.energy or choices.reactions:
@@ -353,7 +307,7 @@ def _layout(
         panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
         for axis in panels:
             keep_style(axis)
-    columns = len(runs) if choices.beside else 1
+    columns = count if choices.beside else 1
     return [stage.add_axes((k / columns, 0.0, 1 / columns, 1.0)) for k in range(columns)], panels
 
 

@@ -164,17 +164,20 @@ def theme_of(axes: Axes) -> Theme:
     return LIGHT if sum(to_rgb(axes.get_facecolor())) > 1.5 else DARK
 
 
-def css_variables(dark: Theme | None = DARK) -> str:
+def css_variables(dark: Theme | None = DARK, when_dark: str | None = None) -> str:
     """Return the style as variables of CSS; without a dark theme it stays light for every reader.
 
-    With one, it follows the reader's system.
+    With one, it follows the reader's system, or the selector ``when_dark`` of a page that lets its
+    reader choose.
     """
     sizes = [f"  --size-{name}: {size}rem;" for name, size in SIZES.items()]
-    scheme = "light" if dark is None else "light dark"
-    told = _rule(":root", [f"  color-scheme: {scheme};", *sizes, *_variables(LIGHT)])
-    if dark is not None:
-        told += f"@media (prefers-color-scheme: dark) {{\n{_rule(':root', _variables(dark))}}}\n"
-    return told
+    light = [*sizes, *_variables(LIGHT)]
+    if dark is None:
+        return _rule(":root", ["  color-scheme: light;", *light])
+    if when_dark is not None:
+        return _rule(":root", light) + _rule(when_dark, _variables(dark))
+    by_system = f"@media (prefers-color-scheme: dark) {{\n{_rule(':root', _variables(dark))}}}\n"
+    return _rule(":root", ["  color-scheme: light dark;", *light]) + by_system
 
 
 def _rule(selector: str, lines: list[str]) -> str:

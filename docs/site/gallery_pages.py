@@ -1,0 +1,151 @@
+"""Films of the site: the gallery's pages, and a small film for each effect.
+
+Every file of examples/gallery is run as it stands, as a reader would run it; it writes its film and
+its page. An effect is shown by the first of its own examples, on two rods, above what its page
+says. Nothing of that is committed.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pendcore as pc
+from sphinx.application import Sphinx
+
+FILMS = Path("_static/gallery")
+
+
+class Scene(NamedTuple):
+    """A file of the gallery: its name, title, what it is about, and its code."""
+
+    name: str
+    title: str
+    about: str
+    code: str
+
+
+def write(examples: Path, folder: Path, site: Path) -> None:
+    """Run the files; write their pages into a folder, and films and live pages beside the site."""
+    static = site / FILMS
+    folder.mkdir(parents=True, exist_ok=True)
+    static.mkdir(parents=True, exist_ok=True)
+    files = sorted(examples.glob("*.py"))
+    with ThreadPoolExecutor(os.cpu_count()) as workers:
+        list(workers.map(lambda file: _run(file, static), files))
+    scenes = [_read(file) for file in files]
+    for scene in scenes:
+        (folder / f"{scene.name}.md").write_text(_page(scene))
+    (folder / "index.md").write_text(_index(scenes))
+    for kind, effect in pc.effects.kinds().items():
+        _film_of_effect(effect.description, static / f"effect_{kind}.mp4")
+
+
+def _run(file: Path, static: Path) -> None:
+    """Run a file; it has to write its film and its page, and to say nothing of what is wrong."""
+    command = [sys.executable, str(file)]
+    done = subprocess.run(command, cwd=static, capture_output=True, text=True, timeout=300)
+    made = all((static / f"{file.stem}{kind}").is_file() for kind in (".mp4", ".html"))
+    if done.returncode or done.stderr or not made:
+        raise RuntimeError(f"{file.name}: {done.stderr[-2000:] or 'it wrote no film or no page'}")
+
+
+def _film_of_effect(told: Any, path: Path) -> None:
+    """Film the textbook's rods with an effect."""
+    names: dict[str, Any] = {**vars(pc.effects), "inf": math.inf}
+    *before, call = told.examples.splitlines()[
+        : told.examples.splitlines().index(told.calls[0]) + 1
+    ]
+    exec("\n".join(before), names)
+    scene = pc.Scene.textbook().replace(effects=[eval(call, names)])
+    sol = pc.simulate(scene, (0, 6), [0.5, 1.0], on_failure="ignore")
+    sol.to_video(path, size=(640, 360))
+
+
+def add_film(app: Sphinx, page: str, source: list[str]) -> None:
+    """Put the film of an effect below the title of its page."""
+    name = page.removeprefix("effects/")
+    film = Path(app.confdir) / FILMS / f"effect_{name}.mp4"
+    if page != name and film.is_file():
+        shown = _film(Scene(f"effect_{name}", name.replace("_", " "), "", ""), "../")
+        title, rest = source[0].split("\n", 1)
+        source[0] = f"{title}\n\n```{{raw}} html\n{shown}\n```\n{rest}"
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    app.connect("source-read", add_film)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _read(file: Path) -> Scene:
+    text = file.read_text()
+    title, _, about = (ast.get_docstring(ast.parse(text)) or "").partition("\n")
+    code = text.split('"""', 2)[2].replace("from __future__ import annotations\n", "").strip()
+    return Scene(file.stem, title.rstrip("."), about.strip(), code)
+
+
+def _film(scene: Scene, place: str) -> str:
+    """Return the film as it plays in a page; it waits where less motion is wanted."""
+    source = f"{place}{FILMS}/{scene.name}.mp4"
+    return (
+        f'<video class="film" src="{source}" muted loop playsinline controls preload="metadata" '
+        f'aria-label="{scene.title}"></video>'
+    )
+
+
+def _page(scene: Scene) -> str:
+    return f"""# {scene.title}
+
+{scene.about}
+
+```{{raw}} html
+{_film(scene, "../")}
+```
+
+<p><a class="reference external" href="../{FILMS}/{scene.name}.html">Change it in your
+browser</a>: a page with the core inside.</p>
+
+<!-- not executed for the site: gallery_pages.py runs the file -->
+
+```python
+{scene.code}
+```
+"""
+
+
+def _index(scenes: list[Scene]) -> str:
+    cards = "\n".join(
+        f""":::{{grid-item-card}} {scene.title}
+:link: {scene.name}
+:link-type: doc
+
+```{{raw}} html
+{_film(scene, "../").replace(" controls", "")}
+```
+:::
+"""
+        for scene in scenes
+    )
+    tree = "\n".join(scene.name for scene in scenes)
+    return f"""# Gallery
+
+Each scene is a dozen lines of Python, with its film and a page in which you can change it.
+
+::::{{grid}} 1 2 2 3
+:gutter: 3
+
+{cards}
+::::
+
+:::{{toctree}}
+:hidden:
+
+{tree}
+:::
+"""
