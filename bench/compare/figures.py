@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 
@@ -16,44 +17,33 @@ from equal_error import SIDES, Contender, Entrants, bar, compare, curve, envelop
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
+from pendcore.plotting import LIGHT, grid, new_axes, sheet
 from record import Record
 from solve_tables import solves_of
-from tables import short
 
-# Dashes and lightness distinguish the families of solvers, markers the methods, so that the figures
-# survive a grey printer.
-FAMILIES: dict[str, tuple[str, Any, float]] = {
-    "pendcore": ("#000000", "-", 2.2),
-    "heyoka": ("#d1495b", (0, (6, 2)), 1.8),
-    "odeint": ("#14506b", (0, (4, 1.5)), 1.3),
-    "arkode": ("#9a6fb8", "-.", 1.3),
-    "cvode": ("#cf8fb4", ":", 1.6),
-    "cyrk_nbsolve2": ("#14506b", (0, (4, 1.5)), 1.3),
-    "cyrk_pysolve": ("#9a6fb8", "-.", 1.3),
-    "scipy": ("#8c8c8c", ":", 1.6),
+plt.style.use(sheet())
+
+
+class Program(NamedTuple):
+    """How a program is drawn: what it is called, its colour, and its dashes."""
+
+    label: str
+    color: str
+    dashes: Any = "-"
+
+
+# The first word of a contender's name tells its program.
+PROGRAMS = {
+    "pendcore": Program("pendcore", LIGHT.ink),
+    "heyoka": Program("heyoka", LIGHT.red, (0, (6, 2))),
+    "odeint": Program("Boost.odeint", LIGHT.blue, (0, (4, 1.5))),
+    "arkode": Program("ARKODE", LIGHT.purple, "-."),
+    "cvode": Program("CVODE", LIGHT.teal, ":"),
+    "cyrk": Program("CyRK", LIGHT.ochre, (0, (4, 1.5))),
+    "scipy": Program("SciPy with numba", LIGHT.quiet, "-."),
 }
-MARKERS = {
-    "dopri5": "o",
-    "rk45": "o",
-    "dop853": "s",
-    "rkf78": "s",
-    "taylor": "*",
-    "heyoka": "*",
-    "rk4": "^",
-    "dopri5-radau5": "^",
-    "dop853-radau5": "<",
-    "taylor-radau5": ">",
-    "verner6": "p",
-    "vern7": "p",
-    "radau5": "D",
-    "radau": "D",
-    "bdf": "v",
-    "adams": "P",
-    "lsoda": "X",
-}
-LEFT_OUT = ("scipy", "python")  # close to what numba makes of them; the tables have them
 ERRORS = np.logspace(-1, -13.5, 126)
-GOAL = "#d1495b"
+GOAL = LIGHT.red
 
 
 def save(drawn: Figure, path: Path, dpi: int, **how: Any) -> None:
@@ -66,42 +56,30 @@ def circumstances(record: Record) -> str:
     return f"{record.measured['machine']['processor']}, {record.measured['date']}"
 
 
-def style(name: str) -> dict[str, Any]:
-    family = next((one for one in FAMILIES if name.startswith(one)), "scipy")
-    marker = next((MARKERS[word] for word in name.split("_") if word in MARKERS), "h")
-    how = zip(("color", "linestyle", "linewidth"), FAMILIES[family], strict=True)
-    return {**dict(how), "marker": marker}
+def draw_programs(axes: Axes, contenders: Iterable[Contender]) -> None:
+    """Draw what each program does best at every error, by whichever of its methods."""
+    ends: list[tuple[float, float, Program]] = []
+    for name, program in PROGRAMS.items():
+        own = [one for one in contenders if one["name"].startswith(name)]
+        best = envelope(point for one in own for point in curve(one))
+        if best:
+            width = 2.6 if name == "pendcore" else 1.6
+            how: dict[str, Any] = {"color": program.color, "linestyle": program.dashes}
+            axes.plot(*zip(*best, strict=True), linewidth=width, **how)
+            ends.append((*best[-1], program))
+    label_ends(axes, ends)
 
 
-def marked(contender: Contender, reached: list[Any]) -> list[Any]:
-    """Choose the settings that get a marker: whole decades of tolerance, or every third."""
-    if contender["setting"] != "tolerance" or contender["name"] == "heyoka":
-        return reached[::3]
-    return [point for point in reached if f"{point['setting']:.4e}".startswith("1.0000")]
-
-
-def draw_contender(axes: Axes, contender: Contender, *, by_language: bool = False) -> None:
-    """Draw the contender's unbeaten points as a line, and some of its settings as markers.
-
-    `by_language`: C++ and Python of pendcore share the axes; the second is then dashed.
-    """
-    reached = [point for point in contender["points"] if "failure" not in point]
-    if not reached:
-        return
-    how = style(contender["name"])
-    if by_language and contender["ours"] and PYTHON in contender["sides"]:
-        how |= {"linestyle": (0, (5, 1)), "color": "#5c5c5c", "linewidth": 1.6}
-    dots = {"linestyle": "", "color": how["color"], "markersize": 5 if how["marker"] != "*" else 8}
-    unbeaten = envelope(curve(contender))
-    axes.plot(*zip(*unbeaten, strict=True), **how | {"marker": ""})
-    shown = marked(contender, reached)
-    across, up = ([point[key] for point in shown] for key in ("error", "minimum_us"))
-    axes.plot(across, up, marker=how["marker"], **dots)
-    if "failure" in contender["points"][-1]:
-        cross = {"marker": "x", "markersize": 9, "markeredgewidth": 1.6}
-        axes.plot(*unbeaten[-1], **dots | cross)
-    label = contender["label"] if by_language else short(contender["label"])
-    axes.plot([], [], label=label, markersize=dots["markersize"], **how)
+def label_ends(axes: Axes, ends: Sequence[tuple[float, float, Program]]) -> None:
+    """Write the names of programs at the ends of their lines, none on another."""
+    heights = [np.log10(time) for _, time, _ in ends]
+    room = 0.05 * (max(heights, default=0.0) - min(heights, default=0.0) + 1.0)
+    taken: list[float] = []
+    for error, time, program in sorted(ends, key=lambda end: end[1]):
+        height = max([np.log10(time), *(one + room for one in taken[-1:])])
+        taken.append(height)
+        how: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
+        axes.annotate(program.label, (error, 10**height), (7, 0), color=program.color, **how)
 
 
 def draw_ratios(axes: Axes, who: Entrants, side: str) -> None:
@@ -113,83 +91,69 @@ def draw_ratios(axes: Axes, who: Entrants, side: str) -> None:
             continue
         errors, ratios = map(np.array, zip(*known, strict=True))
         label = "pendcore / best peer" if one.ours == side else "with x86-64-v3"
-        axes.plot(errors, ratios, color="black", linestyle=dashes, linewidth=1.8, label=label)
+        axes.plot(errors, ratios, color=LIGHT.ink, linestyle=dashes, linewidth=1.8, label=label)
         if dashes == "-":
-            shade: dict[str, Any] = {"color": "0.75", "interpolate": True}
+            shade: dict[str, Any] = {"color": LIGHT.lost, "interpolate": True}
             axes.fill_between(errors, ratios, 1.0, where=ratios > 1.0, **shade)
-    axes.axhline(1.0, color="0.5", linewidth=0.8)
+    axes.axhline(1.0, color=LIGHT.quiet, linewidth=0.8)
     goals = [bar(listed[0], error) for error in ERRORS]
     axes.plot(ERRORS, goals, color=GOAL, linewidth=1.2, linestyle="--", label="goal")
     axes.set(yscale="log", ylim=(0.1, 4.0))
     axes.yaxis.set_major_locator(FixedLocator([0.1, 0.2, 0.5, 1, 2]))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.yaxis.set_minor_formatter(NullFormatter())
-    note: dict[str, Any] = {"fontsize": 7, "color": "0.35", "va": "top"}
-    axes.text(0.012, 0.97, "above 1: the peer is quicker", transform=axes.transAxes, **note)
-    axes.legend(loc="lower left", fontsize=7, frameon=False, ncols=3)
+    note: dict[str, Any] = {"fontsize": 8, "color": LIGHT.quiet, "va": "top"}
+    axes.text(0.012, 0.97, "above 1: the other is quicker", transform=axes.transAxes, **note)
+    axes.legend(loc="lower left", ncols=3)
 
 
-def cost(contender: Contender) -> float:
-    """Return the time at a middling setting that succeeded; it orders the contenders."""
-    times = [point["minimum_us"] for point in contender["points"] if "minimum_us" in point]
-    return float(times[len(times) // 2]) if times else 0.0
-
-
-def error_axis(axes: Axes, tightest: float, loosest: float = 0.1, color: str = "0.88") -> None:
+def error_axis(axes: Axes, tightest: float, loosest: float = 0.1) -> None:
     axes.set(xscale="log", xlim=(loosest, tightest))
-    axes.grid(which="major", color=color, linewidth=0.6)
+    grid(axes)
     axes.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_solves(record: Record, path: Path) -> None:
-    """Draw the work-precision diagram, and best against best below it.
-
-    The slowest is drawn first, so that legend and lines have the same order.
-    """
+    """Draw each program at its best, and best against best below."""
     case, who = solves_of(record)
-    drawn, panels = plt.subplots(
-        2, 2, figsize=(12.0, 9.6), sharex=True, sharey="row", height_ratios=(3, 1),
-        layout="constrained",
-    )  # fmt: skip
+    four = new_axes((12.0, 8.0), 2, 2, new_figure=plt.figure, height_ratios=(3, 1))
+    drawn: Any = four[0].figure
+    panels = (four[:2], four[2:])
+    for row in panels:
+        row[1].sharey(row[0])
     errors = [error for one in who for error, _ in curve(one)]
-    tightest = max(6e-16, min(errors, default=6e-16)) / 3
+    tightest = max(6e-16, min(errors, default=6e-16)) / 3000  # room for the names
     columns = ((COMPILED, "C++ and compiled code"), (PYTHON, "called from Python"))
     for (side, title), upper, lower in zip(columns, *panels, strict=True):
-        present = [one for one in who if side in one["sides"]]
-        shown = [one for one in present if not all(word in one["name"] for word in LEFT_OUT)]
-        for contender in sorted(shown, key=cost, reverse=True):
-            draw_contender(upper, contender)
-        upper.set(yscale="log")
-        upper.set_title(title, fontsize=10, pad=8)
-        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.02), "ncols": 3}
-        if upper.lines:
-            upper.legend(**below, fontsize=7.5, frameon=False, handlelength=3.4)
+        draw_programs(upper, [one for one in who if side in one["sides"]])
+        upper.set(yscale="log", title=title)
         draw_ratios(lower, who, side)
         lower.set_xlabel("largest position error / total length (more accurate to the right)")
         for axes in (upper, lower):
             error_axis(axes, tightest, loosest=1.0)
-    panels[0][0].set_ylabel("time of a solve / \N{MICRO SIGN}s")
-    panels[1][0].set_ylabel("share of the best peer's time")
+    panels[0][0].set_ylabel("time of a run (\N{MICRO SIGN}s)")
+    panels[1][0].set_ylabel("share of the best other's time")
     facts = record.cases[case]
-    title = f"What accuracy costs: {case}, {facts['duration']:g} s, {facts['times']} times"
-    drawn.suptitle(title, fontsize=12)
-    note = f"{circumstances(record)}; a cross: no tighter setting ran"
-    drawn.text(0.01, -0.02, note, fontsize=7, color="0.4")
+    words = case.replace("_", " ")
+    drawn.suptitle(
+        f"What accuracy costs: {words}, {facts['duration']:g} s kept at {facts['times']} times, "
+        "each program by its best method"
+    )
+    drawn.text(0.01, -0.02, circumstances(record), fontsize=8, color=LIGHT.quiet)
     save(drawn, path, 150, bbox_inches="tight")
 
 
 def panels_of(record: Record, height: float, what: str, error: str) -> tuple[Figure, Any]:
     """Make a panel for each case, with times up and errors across."""
-    drawn, panels = plt.subplots(
-        1, len(record.cases), figsize=(4.4 * len(record.cases), height), sharey=True,
-        layout="constrained",
-    )  # fmt: skip
+    count = len(record.cases)
+    panels = new_axes((4.4 * count, height), 1, count, new_figure=plt.figure)
     for panel, facts in zip(panels, record.cases.values(), strict=True):
-        panel.set(yscale="log", xlabel=error)
-        panel.set_title(facts["label"], fontsize=9)
-    panels[0].set_ylabel(f"time of a {what} / \N{MICRO SIGN}s")
-    return drawn, panels
+        panel.sharey(panels[0])
+        panel.set(yscale="log", xlabel=error, title=facts["label"])
+        panel.label_outer()
+    panels[0].set_ylabel(f"time of a {what} (\N{MICRO SIGN}s)")
+    return panels[0].figure, panels
 
 
 def legend_below(drawn: Figure, panels: Any, columns: int) -> None:
@@ -202,15 +166,12 @@ def legend_below(drawn: Figure, panels: Any, columns: int) -> None:
 
 
 def draw_stiff(record: Record, path: Path) -> None:
-    """Draw a panel for each scene; a cross ends a line if tighter settings failed or never ran."""
-    drawn, panels = panels_of(record, 5.4, "solve", "largest position error / length")
+    """Draw a panel for each scene, with each program at its best."""
+    drawn, panels = panels_of(record, 4.6, "run", "largest position error / length")
     for panel, case in zip(panels, record.cases, strict=True):
-        for one in record.taking_part(case):
-            left_out = all(word in one["name"] for word in LEFT_OUT)
-            if COMPILED_V3 not in one["sides"] and not left_out:
-                draw_contender(panel, one, by_language=True)
-        error_axis(panel, 1e-9)
-    legend_below(drawn, panels, 5)
+        present = [one for one in record.taking_part(case) if COMPILED_V3 not in one["sides"]]
+        draw_programs(panel, present)
+        error_axis(panel, 1e-13)
     save(drawn, path, 150)
 
 
@@ -222,7 +183,7 @@ def draw_ensembles(record: Record, path: Path) -> None:
             points = envelope(curve({"points": record.points(name, case)}))
             if points:
                 how: dict[str, Any] = {"linestyle": "-" if facts["ours"] else "--", "marker": "."}
-                how |= {"color": f"C{k}", "label": facts["label"]}
+                how |= {"color": LIGHT.links[k % 6], "label": facts["label"]}
                 panel.plot(*zip(*points, strict=True), **how)
         error_axis(panel, 1e-14)
     legend_below(drawn, panels[:1], 4)

@@ -10,22 +10,23 @@ from forward_tables import CORE, PEER, STEP, added, effects_of, of_links, share
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from pendcore.plotting import LIGHT
 from record import Record
 
 # The lines of chains, each of the best of the contenders whose names begin so.
 CHAINS: dict[str, tuple[str, dict[str, Any]]] = {
-    CORE: ("pendcore", {"color": "#000000", "linestyle": "-", "marker": "o", "linewidth": 2.2}),
+    CORE: ("pendcore", {"color": LIGHT.ink, "linestyle": "-", "marker": "o", "linewidth": 2.2}),
     "pinocchio": (
         "Pinocchio's ABA, the best of its ways",
-        {"color": "#d1495b", "linestyle": "--", "marker": "^"},
+        {"color": LIGHT.red, "linestyle": "--", "marker": "^"},
     ),
     "mujoco": (
         "MuJoCo, the best of its ways",
-        {"color": "#0b5fa5", "linestyle": "-.", "marker": "s"},
+        {"color": LIGHT.blue, "linestyle": "-.", "marker": "s"},
     ),
     STEP: (
         "pendcore, in a step of dopri5",
-        {"color": "#777777", "linestyle": ":", "marker": ".", "linewidth": 1.4},
+        {"color": LIGHT.quiet, "linestyle": ":", "marker": ".", "linewidth": 1.4},
     ),
 }
 
@@ -52,26 +53,26 @@ def draw_chains(record: Record, path: Path) -> None:
             axes.set(xscale="log", yscale="log")
             if start == CORE:  # a guide through the last point, of growth in proportion to n
                 (first, _), (n, value) = line[0], line[-1]
-                guide: dict[str, Any] = {"color": "0.6", "linewidth": 0.8, "zorder": 0}
+                guide: dict[str, Any] = {"color": LIGHT.lost, "linewidth": 0.8, "zorder": 0}
                 axes.plot([first, n], [value * first / n, value], **guide)
                 middle = (first * n) ** 0.5
                 words: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8}
                 at = (middle, value * middle / n)
-                axes.annotate("proportional to n", at, (8, -12), color="0.45", **words)
+                axes.annotate("proportional to n", at, (8, -12), color=LIGHT.quiet, **words)
         axes.set_xlabel("number of links n")
-        axes.grid(which="major", color="0.85", linewidth=0.6)
+        axes.grid(which="major", color=LIGHT.line, linewidth=0.6)
     if both[0].lines:
         both[0].legend(loc="upper left", frameon=False, fontsize=9)
-    both[0].set_ylabel("time of a right-hand side / ns")
-    both[1].set_ylabel("memory of its equations / bytes")
+    both[0].set_ylabel("time of a right-hand side (ns)")
+    both[1].set_ylabel("memory of its equations (bytes)")
     drawn.suptitle("Forward dynamics of a planar chain of n links, C++", fontsize=11)
-    drawn.text(0.01, -0.03, circumstances(record), fontsize=7, color="0.4")
+    drawn.text(0.01, -0.03, circumstances(record), fontsize=7, color=LIGHT.quiet)
     save(drawn, path, 160, bbox_inches="tight")
 
 
 BARS = {
-    STEP: ("pendcore, in a step", "#000000", 0.2),
-    PEER: ("MuJoCo, mj_forward", "#6fa8d6", -0.2),
+    STEP: ("pendcore, in a step", LIGHT.ink, 0.2),
+    PEER: ("MuJoCo, mj_forward", LIGHT.teal, -0.2),
 }
 BAR = 0.36
 LEAST = 0.2  # ns; smaller values, and those lost in the noise, are drawn as this
@@ -117,17 +118,17 @@ def draw_effects(record: Record, path: Path) -> None:
         write(instructions, max(counted, most or 0, 0.0), place, f"{counted:+.0f}")
         stroke(instructions, most, place)
     times.set(xscale="log", xlim=(LEAST, 8000), ylim=(-0.6, len(found) - 0.4))
-    times.set_xlabel("added to a right-hand side / ns\n(in parentheses: of the side's bare scene)")
+    times.set_xlabel("added to a right-hand side (ns)\n(in parentheses: of the side's bare scene)")
     times.set_yticks(range(len(found)), [facts["label"] for _, facts in found], fontsize=9)
     instructions.set_xlim(0, 1.2 * max(instructions.get_xlim()[1], 200.0))
-    instructions.set_xlabel("added to a right-hand side\nin a step / instructions")
+    instructions.set_xlabel("added to a right-hand side\nin a step (instructions)")
     instructions.tick_params(left=False)
     for axes in (times, instructions):
-        axes.grid(axis="x", which="major", color="0.85", linewidth=0.6)
+        axes.grid(axis="x", which="major", color=LIGHT.line, linewidth=0.6)
         axes.set_axisbelow(True)
     drawn.suptitle("What an effect adds to the right-hand side of two links, C++", fontsize=11)
     known = [Patch(color=color, label=label) for label, color, _ in BARS.values()]
     goal = Line2D([], [], color=GOAL, label="promised: at most")
     drawn.legend(handles=[*known, goal], loc="outside lower right", ncols=3, frameon=False)
-    drawn.text(0.01, 0.01, circumstances(record), fontsize=7, color="0.4")
+    drawn.text(0.01, 0.01, circumstances(record), fontsize=7, color=LIGHT.quiet)
     save(drawn, path, 160, bbox_inches="tight")

@@ -10,14 +10,15 @@ from figures import plt, save
 from hard_case_tables import PROGRAMS
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from pendcore.plotting import LIGHT
 from record import Point, Record
 
 # Colours differ in lightness, and dashes differ, so that the figures survive a grey printer.
 STYLES: dict[str, dict[str, Any]] = {
-    "pendcore": {"color": "#000000", "linestyle": "-", "linewidth": 2.0},
-    "scipy": {"color": "#8a8a8a", "linestyle": "-.", "linewidth": 1.4},
-    "mujoco": {"color": "#d1495b", "linestyle": "--", "linewidth": 1.4},
-    "odeint": {"color": "#6fa8d6", "linestyle": ":", "linewidth": 2.0},
+    "pendcore": {"color": LIGHT.ink, "linestyle": "-", "linewidth": 2.0},
+    "scipy": {"color": LIGHT.quiet, "linestyle": "-.", "linewidth": 1.4},
+    "mujoco": {"color": LIGHT.red, "linestyle": "--", "linewidth": 1.4},
+    "odeint": {"color": LIGHT.teal, "linestyle": ":", "linewidth": 2.0},
 }
 Line = tuple[Point, str, dict[str, Any]]
 """A row, its name in a legend, and its style."""
@@ -39,7 +40,7 @@ def sheet(*heights: float, tall: float, **how: Any) -> tuple[Figure, list[Axes]]
         len(heights), 1, figsize=(8.6, tall), layout="constrained", height_ratios=heights, **how
     )
     for each in axes:
-        each.grid(color="0.9", linewidth=0.6)
+        each.grid(color=LIGHT.line, linewidth=0.6)
         each.set_axisbelow(True)
     return figure, list(axes)
 
@@ -66,16 +67,16 @@ def held_rod(record: Record, case: str) -> Figure:
             dot = {"linestyle": "", "marker": "D", "markersize": 7, "clip_on": False}
             axes.plot(t[-1:], [row["error"]], label=f"{label} (the end)", **style | dot)
     watched = 10.0  # s that MuJoCo is run
-    axes.axvline(watched, color="0.6", linewidth=0.8)
+    axes.axvline(watched, color=LIGHT.quiet, linewidth=0.8)
     axes.annotate(" from here on MuJoCo's rate, times the time", (watched, 1e-10), fontsize=9)
-    axes.set(yscale="log", ylim=(1e-11, 1e5), ylabel="moved / rad")
+    axes.set(yscale="log", ylim=(1e-11, 1e5), ylabel="moved (rad)")
     axes.set_title("A rod at 30 degrees, held by friction of twice what it takes", fontsize=11)
-    zero.set(xscale="log", xlim=(t[0], t[-1]), ylim=(-1, 1), xlabel="t / s")
+    zero.set(xscale="log", xlim=(t[0], t[-1]), ylim=(-1, 1), xlabel="t (s)")
     zero.set_yticks([0], ["exactly 0"])
     cut: dict[str, Any] = {"marker": [(-1, -0.6), (1, 0.6)], "markersize": 9, "linestyle": ""}
     for each, spine, y in ((axes, "bottom", 0), (zero, "top", 1)):
         each.spines[spine].set_visible(False)
-        each.plot([0, 1], [y, y], transform=each.transAxes, color="k", clip_on=False, **cut)
+        each.plot([0, 1], [y, y], transform=each.transAxes, color=LIGHT.ink, clip_on=False, **cut)
     axes.tick_params(bottom=False, which="both")
     legend(figure, [*zero.get_lines(), *axes.get_lines()])
     return figure
@@ -88,7 +89,8 @@ def two_joints(record: Record, case: str) -> Figure:
     own: Any = next(iter(record.points("pendcore", case)), {}).get("trace", known)
     for joint, dashes in ((1, "-"), (2, "--")):
         from_hanging = np.degrees(own[f"phi_{joint}"]) - (90 if joint == 1 else 0)
-        angles.plot(known["t"], from_hanging, color="k", linestyle=dashes, label=f"joint {joint}")
+        how: dict[str, Any] = {"color": LIGHT.ink, "linestyle": dashes}
+        angles.plot(known["t"], from_hanging, label=f"joint {joint}", **how)
         times = [0.0, *known["switches"], known["t"][-1]]
         modes = [0.0, *known[f"mode_{joint}"]]  # from the start or a switch to the next
         rests = [
@@ -96,8 +98,8 @@ def two_joints(record: Record, case: str) -> Figure:
             for mode, begin, end in zip(modes, times, times[1:], strict=False)
             if mode == 0
         ]
-        sticks.broken_barh(rests, (-joint - 0.35, 0.7), color="0.55")
-    angles.set(ylabel="angle, from hanging / deg", ylim=(-42, 42))
+        sticks.broken_barh(rests, (-joint - 0.35, 0.7), color=LIGHT.lost)
+    angles.set(ylabel="angle, from hanging (deg)", ylim=(-42, 42))
     angles.legend(loc="upper left", frameon=False, fontsize=9)
     angles.set_title("Two rods with dry friction in both joints under a slow motor", fontsize=11)
     sticks.set_yticks([-1, -2], ["joint 1 sticks", "joint 2 sticks"])
@@ -108,8 +110,8 @@ def two_joints(record: Record, case: str) -> Figure:
         if "trace" in row:
             error = np.maximum(row["trace"]["error"], least)
             errors.plot(known["t"], error, label=label, **style)
-    errors.set(yscale="log", ylim=(least / 2, 1), ylabel="largest error of an angle / rad")
-    errors.set_xlabel("t / s")
+    errors.set(yscale="log", ylim=(least / 2, 1), ylabel="largest error of an angle (rad)")
+    errors.set_xlabel("t (s)")
     for axes in (angles, sticks, errors):
         axes.margins(x=0)
     legend(figure, list(errors.get_lines()))
@@ -126,17 +128,17 @@ def bounces(record: Record, case: str) -> Figure:
             continue
         q = np.array(row["trace"]["q"])
         if label.startswith("SciPy"):  # beneath the others, because it coincides with pendcore
-            style |= {"linestyle": "-", "linewidth": 5.0, "color": "0.8", "zorder": 1}
+            style |= {"linestyle": "-", "linewidth": 5.0, "color": LIGHT.line, "zorder": 1}
         if "0.1 ms" in label or label.startswith("pendcore"):
             style["linewidth"] = 0.9
         plain.plot(left[0] - left, q, **style)
         logarithmic.plot(left, np.where(q > least, q, np.nan), label=label, **style)
-    plain.set(xlabel="t / s", ylabel="angle off the stop / rad", ylim=(-0.03, 0.42))
+    plain.set(xlabel="t (s)", ylabel="angle off the stop (rad)", ylim=(-0.03, 0.42))
     plain.margins(x=0)
     plain.set_title("A rod pressed against a stop, restitution 0.8", fontsize=11)
     logarithmic.set(xscale="log", yscale="log", xlim=(left[0], left[-1]), ylim=(least, 1))
-    logarithmic.set_xlabel("time left until infinitely many bounces are over / s")
-    logarithmic.set_ylabel("angle off the stop / rad")
+    logarithmic.set_xlabel("time left until infinitely many bounces are over (s)")
+    logarithmic.set_ylabel("angle off the stop (rad)")
     legend(figure, list(logarithmic.get_lines()))
     return figure
 
@@ -152,16 +154,16 @@ def two_roots(record: Record, case: str) -> Figure:
     # So close to the turn the swing is as good as a parabola.
     fall = 0.75 * gravity * np.sin(amplitude) * (1e-3 * ms) ** 2
     swing.plot(ms, 1e6 * (amplitude - mark - fall), "k")
-    swing.axhline(0.0, color="0.5", linestyle="--", linewidth=1.0)
+    swing.axhline(0.0, color=LIGHT.quiet, linestyle="--", linewidth=1.0)
     words: dict[str, Any] = {"textcoords": "offset points"}
     swing.annotate("the mark", (-close, 6), (4, 0), fontsize=9, **words)
-    swing.set(xlabel="time from the tenth turn / ms", ylabel="angle past the mark / µrad")
+    swing.set(xlabel="time from the tenth turn (ms)", ylabel="angle past the mark (µrad)")
     swing.margins(x=0)
     swing.set_title("A swing that passes a mark 1.3 ms before and after it turns", fontsize=11)
     for row, (one, label, style) in enumerate(lines):
         steps, found = one["trace"]["steps"], one["trace"]["found"]
-        rows.axhline(-row, color="0.85", linewidth=0.8)
-        rows.plot(steps, np.full(len(steps), -row), "|", color="0.45", markersize=8)
+        rows.axhline(-row, color=LIGHT.line, linewidth=0.8)
+        rows.plot(steps, np.full(len(steps), -row), "|", color=LIGHT.quiet, markersize=8)
         rows.plot(found, np.full(len(found), -row), "o", color=style["color"], markersize=6)
         untold = ", steps not told" if label.startswith("Boost") else ""
         text = f"{label}: {len(found)} found{untold}"

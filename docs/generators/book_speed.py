@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 from page_part import rewrite
+from pendcore.plotting import LIGHT, new_axes
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "bench/compare"))
@@ -305,12 +306,10 @@ def figure(found: dict[str, Any], path: Path) -> None:
     import matplotlib as mpl
 
     mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    axes: Any
-    sheet, axes = plt.subplots(1, 2, figsize=(11, 3.9), layout="constrained", sharey=True)
+    axes = new_axes((11, 3.9), columns=2, sharey=True)
+    sheet: Any = axes[0].figure
     every = [row["least"] for row in found["solves"]]
-    colors = ["#b3541e"] * 3 + ["#8c8c8c"] + ["#1f6f8b"] * 2
+    colors = [LIGHT.ochre] * 3 + [LIGHT.quiet] + [LIGHT.blue] * 2
     for part, named in zip(axes, ("1e-3", "1e-9"), strict=True):
         rows = {row["way"]: row for row in found["solves"] if row["tolerance"] == named}
         least = [rows[way]["least"] for way in WAYS]
@@ -320,7 +319,6 @@ def figure(found: dict[str, Any], path: Path) -> None:
         part.set(xscale="log", xlim=(min(every) / 3, max(every) * 80))
         part.set_xlabel("time of a run of 5 s (s); ×: faster than inline")
         part.set_title(f"relative tolerance {named}")
-        part.spines[["top", "right"]].set_visible(False)
     axes[0].invert_yaxis()
     sheet.savefig(path, dpi=110)
 

@@ -11,19 +11,20 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
+from pendcore.plotting import LIGHT, grid, new_axes
 
 RUNS = [
-    ("dopri5", 1e-6, "-", "0.65"),
-    ("dopri5", 1e-9, "-", "0.35"),
-    ("dop853", 1e-9, "--", "tab:orange"),
-    ("taylor", 1e-13, ":", "tab:blue"),
+    ("dopri5", 1e-6, "-", LIGHT.lost),
+    ("dopri5", 1e-9, "-", LIGHT.quiet),
+    ("dop853", 1e-9, "--", LIGHT.red),
+    ("taylor", 1e-13, ":", LIGHT.blue),
 ]
 
 
 def draw() -> plt.Figure:
     """Draw each step's largest torque at any joint, in a step plot of the textbook's case."""
     scene = pc.Scene.textbook()
-    figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
+    (axes,) = new_axes((7, 4.2))
     for method, rtol, style, color in RUNS:
         sol = pc.simulate(
             scene,
@@ -40,13 +41,13 @@ def draw() -> plt.Figure:
         axes.stairs(
             found.torque.max(axis=1), edges, baseline=None, ls=style, color=color, label=label
         )
-    axes.set(yscale="log", xlim=(0, 5), xlabel="t / s", ylabel="torque that is missing / (N m)")
+    axes.set(yscale="log", xlim=(0, 5), xlabel="t (s)", ylabel="torque that is missing (N m)")
     weight = found.weight
     share = axes.secondary_yaxis("right", functions=(lambda x: x / weight, lambda x: x * weight))
     share.set_ylabel("share of m g L")
-    axes.grid(alpha=0.3)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2, frameon=False)
-    return figure
+    grid(axes)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
+    return axes.figure
 
 
 if __name__ == "__main__":

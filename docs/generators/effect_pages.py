@@ -88,12 +88,7 @@ def latex(law: str) -> str:
     )
     told = re.sub(r"(?<![\\{])\b" + _WORD.pattern, written, bars)
     told = re.sub(r"\^(\w)", r"^{\1}", told).replace("  ", r" \quad ")
-    return (
-        _TEXTS.sub(r"\\text{", told)
-        .replace("<=", r"\le")
-        .replace("+=", r"\mathrel{+}=")
-        .replace("+-", r"\pm")
-    )
+    return _TEXTS.sub(r"\\text{", told).replace("<=", r"\le").replace("+-", r"\pm")
 
 
 def _page(cls: type[Effect]) -> str:

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from page_part import rewrite
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cost.measurement import processor
+from pendcore.plotting import LIGHT, legend_above, new_axes
 from scipy.interpolate import CubicHermiteSpline
 
 ROOT = Path(__file__).parents[2]
@@ -168,29 +169,33 @@ def unresolved(found: dict[str, Any], times: Floats) -> list[float]:
     return [float(np.mean(lost <= t)) for t in times]
 
 
-def draw(found: dict[str, Any], count: int, path: Path) -> None:
+def draw(found: dict[str, Any], path: Path) -> None:
+    """Draw when a link first turns over, what is not resolved, and what has no value."""
     mpl.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib.patches import Patch
 
-    fig, (left, right) = plt.subplots(1, 2, figsize=(13, 5.6), layout="constrained", sharey=True)
-    edges = [-180, 180, -180, 180]
+    (axes,) = new_axes((8.6, 7.0))
+    sheet: Any = axes.figure
+    how: dict[str, Any] = {"origin": "lower", "extent": [-180, 180] * 2, "interpolation": "none"}
     shown = np.ma.masked_invalid(found["flip"] / UNIT)
-    image = left.imshow(
-        shown.T, origin="lower", extent=edges, norm="log", cmap="turbo_r", interpolation="none"
+    image = axes.imshow(shown.T, norm="log", cmap="viridis", **how)
+    sheet.colorbar(image, ax=axes, label="first turn over, in sqrt(l/g)")
+    never = ~np.isfinite(found["flip"]) & ~found["forbidden"]
+    kinds = (
+        ("energy forbids it", found["forbidden"], LIGHT.line),
+        ("did not turn over", never, LIGHT.ground),
+        ("not resolved", ~found["resolved"], LIGHT.red),
     )
-    fig.colorbar(image, ax=left, label="first turn over, in sqrt(l/g)")
-    kinds = np.where(found["forbidden"], 2.0, found["resolved"].astype(float))
-    colours = mpl.colors.ListedColormap(["0.2", "tab:green", "white"])
-    right.imshow(
-        kinds.T, origin="lower", extent=edges, cmap=colours, vmin=0, vmax=2, interpolation="none"
-    )
-    share = 1 - found["resolved"].mean()
-    right.set_title(f"green: resolved; black: not ({share:.1%}); white: energy forbids it")
-    for ax in (left, right):
-        ax.set(xlabel="angle of link 1 from hanging (degrees)", xticks=range(-180, 181, 60))
-    left.set(ylabel="angle of link 2 from hanging (degrees)", yticks=range(-180, 181, 60))
-    fig.savefig(path, dpi=110)
-    plt.close(fig)
+    for _, mask, color in kinds:
+        pixels = np.ma.masked_where(~mask.T, np.ones(mask.T.shape))
+        axes.imshow(pixels, cmap=mpl.colors.ListedColormap([color]), **how)
+    legend_above(axes, [
+        Patch(facecolor=color, edgecolor=LIGHT.quiet, label=f"{name}: {mask.mean():.1%}")
+        for name, mask, color in kinds
+    ])  # fmt: skip
+    axes.set(xlabel="angle of link 1 from hanging (deg)", xticks=range(-180, 181, 60))
+    axes.set(ylabel="angle of link 2 from hanging (deg)", yticks=range(-180, 181, 60))
+    sheet.savefig(path, dpi=110)
 
 
 def page(record: dict[str, Any]) -> str:
@@ -246,7 +251,7 @@ def main() -> None:
     }
     (args.out / "figures").mkdir(parents=True, exist_ok=True)
     (args.out / "records").mkdir(parents=True, exist_ok=True)
-    draw(found, args.count, args.out / "figures/flip_map.png")
+    draw(found, args.out / "figures/flip_map.png")
     (args.out / "records/flip_map.json").write_text(json.dumps(record, indent=1) + "\n")
     path = args.out / "background/flip_map.md"
     if path.exists():

@@ -21,6 +21,7 @@ import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
 from page_part import rewrite
+from pendcore.plotting import LIGHT, grid, legend_above, new_axes
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
@@ -158,27 +159,27 @@ def draw_run(path: Path) -> None:
     times = np.linspace(*SPAN, 281)
     true = np.abs(run(times)[:2].T - truth(times)).max(axis=1)
     found, valid = run.estimate_error(), run.valid_until(LIMIT)
-    sheet = Figure(figsize=(7.2, 6.4), layout="constrained")
-    above, middle, below = sheet.subplots(3, 1, sharex=True, height_ratios=[1, 1, 1.5])
+    above, middle, below = new_axes((7.2, 6.4), 3, new_figure=Figure, height_ratios=[1, 1, 1.5])
+    sheet: Any = above.figure
     run.plot(ax=[above, middle], horizon=LIMIT)
     for axis in (above, middle):
         axis.set_xlabel("")
-        axis.lines[0].set_color("k")  # the shade is what is to be seen
-    below.semilogy(found.t[1:], found.angle[1:], "-", color="0.75", lw=4, label="estimate")
+    below.semilogy(found.t[1:], found.angle[1:], "-", color=LIGHT.lost, lw=4, label="estimate")
     limited = np.maximum.accumulate(found.angle)
-    below.semilogy(found.t[1:], limited[1:], "--", color="C3", lw=1.2,
+    below.semilogy(found.t[1:], limited[1:], "--", color=LIGHT.red, lw=1.2,
                    label="what valid_until takes")  # fmt: skip
-    below.semilogy(times[1:], true[1:], ".", color="k", ms=3, label="true, by series in 44 digits")
-    below.axhline(LIMIT, color="C0", lw=0.9)
-    below.axvline(valid, color="C0", lw=0.9)
+    below.semilogy(
+        times[1:], true[1:], ".", color=LIGHT.ink, ms=3, label="true, by series in 44 digits"
+    )
+    below.axhline(LIMIT, color=LIGHT.teal, lw=0.9)
+    below.axvline(valid, color=LIGHT.teal, lw=0.9)
     below.annotate(f"valid until {valid:.2f} s", (valid, 1e-11), xytext=(-6, 0), ha="right",
-                   textcoords="offset points", color="C0")  # fmt: skip
+                   textcoords="offset points", color=LIGHT.teal)  # fmt: skip
     below.annotate(f"{LIMIT} rad", (0.2, LIMIT), xytext=(0, 4), textcoords="offset points",
-                   color="C0")  # fmt: skip
+                   color=LIGHT.teal)  # fmt: skip
     below.set(xlabel="t (s)", ylabel="error of the angles (rad)", xlim=SPAN, ylim=(1e-13, 1e3))
-    below.grid(True, alpha=0.4)
-    sheet.legend(*below.get_legend_handles_labels(), loc="outside lower center", ncols=3,
-                 frameon=False)  # fmt: skip
+    grid(below)
+    legend_above(below)
     sheet.savefig(path, dpi=110)
 
 
@@ -186,8 +187,8 @@ def draw_trusted(found: dict[str, Any], path: Path) -> None:
     """Draw how long runs are trusted against how long they are right."""
     from matplotlib.figure import Figure
 
-    sheet = Figure(figsize=(5.4, 5.0), layout="constrained")
-    axis = sheet.subplots()
+    (axis,) = new_axes((5.4, 5.2), new_figure=Figure)
+    sheet: Any = axis.figure
     marks = dict(zip(RTOLS, ["v", "^", "o", "s"], strict=True))
     for one in found["trusted"]:
         if one["method"] != "dopri5":
@@ -195,15 +196,16 @@ def draw_trusted(found: dict[str, Any], path: Path) -> None:
         axis.plot(one["right"], one["valid"], marks[one["rtol"]], ms=5, mfc="none",
                   label=f"rtol = {one['rtol']:.0e}")  # fmt: skip
     ends = np.array([0.0, float(record.T_END)])
-    axis.plot(ends, ends, "k-", lw=1)
-    axis.plot(ends, 0.7 * ends, "k:", lw=1)
+    axis.plot(ends, ends, "-", color=LIGHT.ink, lw=1)
+    axis.plot(ends, 0.7 * ends, ":", color=LIGHT.ink, lw=1)
     axis.annotate("as long as it is right", (9.0, 9.0), xytext=(-4, 4), ha="right",
                   textcoords="offset points")  # fmt: skip
     axis.annotate("0.7 of that", (10.5, 7.35), xytext=(4, -10), textcoords="offset points")
     axis.set(xlabel=f"time until an angle is off by {LIMIT} rad (s)",
              ylabel=f"valid_until({LIMIT}) (s)", xlim=ends, ylim=ends)  # fmt: skip
     axis.set_aspect("equal")
-    sheet.legend(loc="outside upper center", ncols=2, frameon=False)
+    grid(axis)
+    legend_above(axis)
     sheet.savefig(path, dpi=110)
 
 
@@ -211,8 +213,8 @@ def draw_exponents(spectrum: pc.LyapunovExponents, path: Path) -> None:
     """Draw the finite-time spectrum."""
     from matplotlib.figure import Figure
 
-    sheet = Figure(figsize=(6.4, 3.8), layout="constrained")
-    axis = sheet.subplots()
+    (axis,) = new_axes((6.4, 3.8), new_figure=Figure)
+    sheet: Any = axis.figure
     for line, style in zip(spectrum.plot(axis), ["-", "--", "-.", ":"], strict=True):
         line.set_linestyle(style)
     axis.set_xscale("log")

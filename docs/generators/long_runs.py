@@ -21,6 +21,7 @@ import numpy.typing as npt
 import pendcore as pc
 from mpmath import cos, mp, mpf, sin
 from page_part import rewrite
+from pendcore.plotting import LIGHT, grid, new_axes
 
 ROOT = Path(__file__).parents[2]
 BOOK = pc.Scene.textbook()
@@ -152,25 +153,23 @@ def tables(found: dict[str, Any]) -> str:
 def figure(found: dict[str, Any], path: Path) -> None:
     """Draw the drift of the textbook's case, and the growth of the rms over the starts."""
     mpl.use("Agg")
-    from matplotlib import pyplot as plt
-
-    axes: Any
-    sheet, axes = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
-    for name, color in (("rounded", "#b3541e"), ("compensated", "#1f6f8b")):
+    axes = new_axes((9, 3.6), columns=2)
+    sheet: Any = axes[0].figure
+    for name, color in (("rounded", LIGHT.ochre), ("compensated", LIGHT.blue)):
         one = found[name]
         times = np.linspace(0, one["drift"]["steps"] * STEP, len(one["drift"]["series"]))
         axes[0].plot(times, np.array(one["drift"]["series"]) * 1e12, color=color, label=name, lw=1)
         axes[1].loglog(found["steps"], one["rms"], "o-", color=color, label=name, ms=3)
     first = found["compensated"]["rms"][0]
     root = first * np.sqrt(np.array(found["steps"]) / found["steps"][0])
-    axes[1].loglog(found["steps"], root, ":", color="0.4", label="square root of the steps")
-    axes[0].set(xlabel="time (s)", ylabel="energy drift / |total energy| (1e-12)",
+    axes[1].loglog(found["steps"], root, ":", color=LIGHT.quiet, label="square root of the steps")
+    axes[0].set(xlabel="t (s)", ylabel="energy drift / |total energy| (1e-12)",
                 title=f"textbook's case, {found['rounded']['drift']['steps']:,} steps")  # fmt: skip
     axes[1].set(xlabel="steps of 1e-4 s", ylabel="rms energy drift (J)",
                 title=f"{found['starts']} random starts")  # fmt: skip
     for part in axes:
-        part.legend(frameon=False)
-        part.spines[["top", "right"]].set_visible(False)
+        part.legend()
+        grid(part)
     sheet.savefig(path, dpi=110)
 
 

@@ -27,6 +27,7 @@ import notebook_pages  # noqa: E402
 import pendcore  # noqa: E402
 import python_reference  # noqa: E402
 from pendcore.plotting import css_variables  # noqa: E402
+from sphinx.application import Sphinx  # noqa: E402
 
 project = "pendcore"
 author = "pendcore maintainers"
@@ -38,11 +39,11 @@ extensions = [
     "numpydoc",
     "sphinx.ext.autodoc",
     "sphinx.ext.intersphinx",
-    "sphinx.ext.mathjax",
     "sphinx_copybutton",
     "sphinx_design",
     "executed",
     "gallery_pages",
+    "mathml",
     "repository_pages",
 ]
 exclude_patterns = ["site", "generators", "records", "figures"]
@@ -66,6 +67,8 @@ html_theme = "pydata_sphinx_theme"
 html_title = "pendcore"
 html_static_path = ["_static"]
 html_css_files = ["house.css", "site.css"]
+html_js_files = ["films.js"]
+html_math_renderer = "mathml"
 html_favicon = "_static/favicon.svg"
 html_context = {"default_mode": "auto"}
 html_show_sourcelink = False
@@ -91,3 +94,13 @@ python_reference.write(ROOT / "docs/reference/python")
 notebook_pages.write(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
 example_pages.write(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
+
+
+def quiet(app: Sphinx, failure: Exception | None) -> None:
+    """Take the theme's messages out of the console of whoever reads the site."""
+    for script in Path(app.outdir).glob("_static/scripts/pydata-sphinx-theme.js"):
+        script.write_text(script.read_text().replace("console.log(", "void ("))
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("build-finished", quiet)

@@ -47,7 +47,9 @@ EXTENDED_BY = {
 
 
 def callables(module: Any) -> list[str]:
-    return [name for name in module.__all__ if callable(getattr(module, name))]
+    """Return the functions and classes of a module that `pendcore` itself does not offer."""
+    own = {name: getattr(module, name) for name in module.__all__ if name not in pendcore.__all__}
+    return [name for name, x in own.items() if inspect.isclass(x) or inspect.isroutine(x)]
 
 
 def public_names() -> set[str]:

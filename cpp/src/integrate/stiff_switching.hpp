@@ -49,11 +49,11 @@ struct StiffSwitching {
 };
 
 inline constexpr StiffSwitching<dormand_prince_5, radau_5> dopri5_radau5{
-    "dopri5-radau5", {.color = "#8b6bb1", .dash = "1 1", .marker = "v"}};
+    "dopri5-radau5", {.color = "purple", .dash = "1 1", .marker = "v"}};
 inline constexpr StiffSwitching<dormand_prince_8, radau_5> dop853_radau5{
-    "dop853-radau5", {.color = "#a8741a", .dash = "3 1 1 1", .marker = "<"}};
+    "dop853-radau5", {.color = "ochre", .dash = "3 1 1 1", .marker = "<"}};
 inline constexpr StiffSwitching<taylor, radau_5> taylor_radau5{
-    "taylor-radau5", {.color = "#3f3f5f", .dash = "6 2", .marker = ">"}};
+    "taylor-radau5", {.color = "teal", .dash = "6 2", .marker = ">"}};
 
 class StiffSwitchingStepper final : public Stepper {
  public:

@@ -43,7 +43,7 @@ def plot(
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
         usual = {"markerfacecolor": theme.ground, "markersize": 5, "label": method}
-        given = {**usual, **line_style(method), **line_properties}
+        given = {**usual, **line_style(method, theme), **line_properties}
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
         (line,) = ax.plot([p.error for p in ours], height, **given)
         lines.append(line)

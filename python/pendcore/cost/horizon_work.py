@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, nan
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
 from pendcore import LyapunovExponents
 from pendcore.cost.runs import line_style
+from pendcore.plotting import grid, new_axes, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,18 +128,20 @@ class HorizonWork:
         ``figure`` is an empty one of matplotlib's. Default: a new one of pyplot's.
         """
         if figure is None:
-            import matplotlib.pyplot as plt
-
-            figure = plt.figure(figsize=(9.6, 4.2), layout="constrained")
-        by_digits, by_cost = figure.subplots(1, 2, sharey=True)
+            by_digits, by_cost = new_axes((9.6, 4.2), columns=2)
+            by_cost.sharey(by_digits)
+            figure = cast("Figure", by_digits.figure)
+        else:
+            by_digits, by_cost = figure.subplots(1, 2, sharey=True)
+        theme = theme_of(by_digits)
         for method in self.methods:
             points = self.of(method)
             valid = [point.valid for point in points]
-            properties = {**line_style(method), "markersize": 5}
+            properties = {**line_style(method, theme), "markersize": 5}
             by_digits.plot([point.early for point in points], valid, label=method, **properties)
             by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
             to_the_end = [point for point in points if self.is_to_the_end(point)]
-            hollow = {**properties, "linestyle": "", "markerfacecolor": "w", "zorder": 3}
+            hollow = {**properties, "linestyle": "", "markerfacecolor": theme.ground, "zorder": 3}
             valid = [point.valid for point in to_the_end]
             if to_the_end:
                 by_digits.plot([point.early for point in to_the_end], valid, **hollow)
@@ -148,7 +151,8 @@ class HorizonWork:
         columns = len(self.methods) + 1
         if any(self.is_to_the_end(point) for point in self.points):
             columns += 1
-            by_digits.plot([], [], "o", color="k", markerfacecolor="w", label="hollow: to the end")
+            hollow = {"color": theme.ink, "markerfacecolor": theme.ground, "linestyle": ""}
+            by_digits.plot([], [], marker="o", label="hollow: to the end", **hollow)
         by_digits.set_xscale("log")
         by_digits.invert_xaxis()
         by_digits.set_xlabel(f"error of the angles in the first {self.early:.2g} s (rad)")
@@ -156,7 +160,7 @@ class HorizonWork:
         by_cost.set_xscale("log")
         by_cost.set_xlabel("computing time for these seconds (\N{MICRO SIGN}s)")
         for axis in (by_digits, by_cost):
-            axis.grid(True, alpha=0.4)
+            grid(axis)
             axis.set_ylim(bottom=0)
             _few_ticks(axis)
         figure.legend(loc="outside upper center", ncols=columns, frameon=False)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 import pendcore as pc
 from pendcore.messages import silence
 from pendcore.methods import known_methods
+from pendcore.plotting import LIGHT, Theme
 
 
 class Start(NamedTuple):
@@ -67,9 +68,9 @@ def has_error_estimate(method: str) -> bool:
     return bool(known_methods()[method]["error_order"])
 
 
-def line_style(method: str) -> dict[str, Any]:
+def line_style(method: str, theme: Theme = LIGHT) -> dict[str, Any]:
     """Return how figures draw a method: matplotlib's colour, dash and marker."""
-    color, dash, marker = known_methods()[method]["line"]
+    name, dash, marker = known_methods()[method]["line"]
     lengths = tuple(float(one) for one in dash.split()) if dash[0].isdigit() else None
     linestyle = dash if lengths is None else (0, lengths)
-    return {"color": color, "linestyle": linestyle, "marker": marker}
+    return {"color": getattr(theme, name), "linestyle": linestyle, "marker": marker}

@@ -96,11 +96,13 @@ def new_axes(
     rows: int = 1,
     columns: int = 1,
     new_figure: NewFigure = figure_of_pyplot,
+    **grid_properties: Any,
 ) -> list[Axes]:
     """Return the axes of a new figure in the house's style, row by row; columns share their x."""
+    how = {"squeeze": False, "sharex": "col", **grid_properties}
     with applied():
         figure = new_figure(figsize=size, layout="constrained")
-        axes = list(figure.subplots(rows, columns, squeeze=False, sharex="col").ravel())
+        axes = list(figure.subplots(rows, columns, **how).ravel())
         for axis in axes:
             keep_style(axis)
     return axes

@@ -29,7 +29,7 @@ inline constexpr Tableau<7, 4> dormand_prince_5 = {
              .stability = 3.25,
              .error_over_rtol = 3.0,
              .second_opinion = 3,
-             .line = {.color = "#1f5fa8", .dash = "-", .marker = "o"}},
+             .line = {.color = "blue", .dash = "-", .marker = "o"}},
     .first_same_as_last = true,
     .written_out = true,
     .c = {{{0}, {1, 5}, {3, 10}, {4, 5}, {8, 9}, {1}, {1}}},

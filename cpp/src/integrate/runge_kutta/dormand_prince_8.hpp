@@ -39,7 +39,7 @@ inline constexpr Tableau<13, 7, 3> dormand_prince_8 = {
              .stability = 6.1,
              .error_over_rtol = 0.4,
              .second_opinion = 2,
-             .line = {.color = "#c2410c", .dash = "--", .marker = "s"}},
+             .line = {.color = "red", .dash = "--", .marker = "s"}},
     .first_same_as_last = true,
     .c = {{{0},
            {12, 135, -2},

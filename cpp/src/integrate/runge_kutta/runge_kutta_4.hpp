@@ -21,7 +21,7 @@ inline constexpr Tableau<5, 3> runge_kutta_4 = {
              .order = 4,
              .error_order = 0,
              .interpolant_order = 3,
-             .line = {.color = "#8a8a8a", .dash = ":", .marker = "P"}},
+             .line = {.color = "quiet", .dash = ":", .marker = "P"}},
     .first_same_as_last = true,
     .c = {{{0}, {1, 2}, {1, 2}, {1}, {1}}},
     .a = {{{}, {{{1, 2}}}, {{{0}, {1, 2}}}, {{{0}, {0}, {1}}}, {{{1, 6}, {1, 3}, {1, 3}, {1, 6}}}}},

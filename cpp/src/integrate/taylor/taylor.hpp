@@ -60,7 +60,7 @@ inline constexpr TaylorSeries taylor = {
              .dense_output_is_series = true,
              .error_over_rtol = 0.9,
              .second_opinion = 1,
-             .line = {.color = "#000000", .dash = "-", .marker = "D"}}};
+             .line = {.color = "ink", .dash = "-", .marker = "D"}}};
 
 inline constexpr int lowest_taylor_order = 8;  ///< the step looks at eight coefficients
 
