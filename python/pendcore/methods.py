@@ -59,14 +59,14 @@ def pair_of(first: str) -> str:
 
 
 def evaluations(method: str, last_method: str, nfev: int) -> str:
-    """Return the number of evaluations: series of Taylor's method, right-hand sides of others."""
+    """Return the number of evaluations: Taylor expansions, or right-hand sides by other methods."""
     known = known_methods()
     first = known[method]["first"] or method
     if not known[first]["dense_output_is_series"]:
-        return f"{nfev} right-hand sides"
+        return f"{nfev:,} right-hand sides"
     if last_method != first:
-        return f"{nfev} series and right-hand sides"
-    return f"{nfev} series, each as long as many right-hand sides"
+        return f"{nfev:,} Taylor expansions and right-hand sides"
+    return f"{nfev:,} Taylor expansions"
 
 
 def __dir__() -> list[str]:

@@ -213,6 +213,7 @@ def test_a_repr_says_how_it_ended_what_was_run_and_what_it_took():
         f"method   dopri5, 4 steps, {run.stats.nfev} right-hand sides",
         "t        0 ... 1 s, 5 kept",
         "last q   ",
+        "right    not estimated yet: sol.valid_until() does, by a second run",
         "energy   drift ",
     ):
         assert f"\n  {words}" in repr(run)
@@ -220,10 +221,10 @@ def test_a_repr_says_how_it_ended_what_was_run_and_what_it_took():
 
 
 COUNTED = [
-    (False, "auto", "series, each as long as many right-hand sides"),
-    (False, "taylor", "series, each as long as many right-hand sides"),
+    (False, "auto", "Taylor expansions"),
+    (False, "taylor", "Taylor expansions"),
     (False, "dop853-radau5", "right-hand sides"),
-    (True, "auto", "series and right-hand sides"),
+    (True, "auto", "Taylor expansions and right-hand sides"),
     (True, "radau5", "right-hand sides"),
 ]
 
@@ -232,9 +233,18 @@ COUNTED = [
 def test_it_says_whether_it_is_series_that_were_counted(stiff, method, counted):
     scene = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)] * stiff)
     run = pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 1), method=method)
-    assert f" steps, {run.stats.nfev} {counted}\n" in str(run)
+    assert f" steps, {run.stats.nfev:,} {counted}\n" in str(run)
     summary = " ".join(summary_text(facts(run)).split())
-    assert f" work {run.stats.nfev} {counted} energy" in summary
+    assert f" work {run.stats.nfev:,} {counted} energy" in summary
+
+
+def test_it_says_until_when_it_is_right_once_that_is_known():
+    chaotic = pc.simulate(BOOK, q0=0.0, t_span=(0, 30))
+    until = chaotic.valid_until()
+    assert f"\n  right    to 0.1 rad until {until:.4g} s\n" in str(chaotic)
+    short = pc.simulate(BOOK, q0=[1, 1], t_span=(0, 1))
+    short.valid_until()
+    assert "\n  right    to 0.1 rad to the end\n" in str(short)
 
 
 def test_it_has_a_line_of_the_accuracy_that_was_asked_for():

@@ -213,7 +213,7 @@ def _rows(cost: AccuracyCost) -> Iterator[str]:
         yield f"  {mark} {_row(point)}"
     yield "  * no other is both more accurate and faster"
     if any(point.method == "taylor" and not point.failure for point in cost.points):
-        yield "  for taylor, series are counted, each as long as many right-hand sides"
+        yield "  taylor: its expansions are counted; each takes as long as many right-hand sides"
 
 
 def _row(point: Point) -> str:

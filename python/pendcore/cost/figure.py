@@ -72,7 +72,7 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
     ax.set_xlabel("largest position error / total length (more accurate to the right)")
     counted = "right-hand sides"
     if any(p.method == "taylor" for p in points):
-        counted += " (of taylor: series)"
+        counted += " (of taylor: expansions)"
     ax.set_ylabel(f"time of a run ({unit})" if y == "time" else counted)
     if not ax.xaxis_inverted():
         ax.invert_xaxis()

@@ -8,6 +8,8 @@ from pendcore import Solution
 from pendcore.messages import listed
 from pendcore.methods import evaluations
 
+_LIMIT = 0.1
+"""rad: a run is right until its error passes this, unless another limit is asked for."""
 _MANY = 4000
 """With more times than this, a repr computes the energy at some of them only."""
 
@@ -20,31 +22,44 @@ def text(solution: Solution) -> str:
 
 
 def rows_of(solution: Solution) -> list[tuple[str, str]]:
-    """Return what the lines say, with the name of each."""
-    n, t, stats = len(solution.scene.links), solution.t, solution.stats
+    """Return what the lines say, with the name of each: what matters most comes first."""
+    t, stats = solution.t, solution.stats
     status, message = solution.status, solution.message
     called = evaluations(solution.method, solution.last_method, stats.nfev)
-    rows = [
-        ("status", message if message.startswith(f"{status}:") else f"{status}: {message}"),
-        ("scene", f"{n} link{'s'[: n > 1]}, gravity {solution.scene.gravity:.6g} m/s^2"),
-        *([("effects", _effects(solution))] if solution.scene.effects else []),
-        ("method", f"{solution.method}, {stats.accepted} steps, {called}"),
-    ]
-    if solution.accuracy is not None:
-        rows.append(("accuracy", solution.accuracy.text()))
+    rows = [("status", message if message.startswith(f"{status}:") else f"{status}: {message}")]
     if len(t):
-        rows += [
-            ("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"),
-            ("last q", f"{listed(solution.q[-1])} rad"),
-            ("last qd", f"{listed(solution.qd[-1])} rad/s"),
-        ]
+        rows.append(("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"))
+    rows.append(("right", _right(solution)))
     every = -(-len(t) // _MANY) or 1
     of_some = f" (of one time in {every})" if every > 1 else ""
     drift = solution.energy_drift(every)
     rows.append(("energy", f"drift {drift.in_words}{of_some}"))
     if drift.verdict:
         rows.append(("", drift.verdict))
+    if len(t):
+        rows.append(("last q", f"{listed(solution.q[-1])} rad"))
+        rows.append(("last qd", f"{listed(solution.qd[-1])} rad/s"))
+    if solution.accuracy is not None:
+        rows.append(("accuracy", solution.accuracy.text()))
+    rows.append(("scene", _scene(solution)))
+    rows.append(("method", f"{solution.method}, {stats.accepted:,} steps, {called}"))
     return rows
+
+
+def _right(solution: Solution) -> str:
+    """Return until when a run is right, if that is known, or how to find out."""
+    known = solution.known_error
+    if known is None:
+        return "not estimated yet: sol.valid_until() does, by a second run"
+    until, end = known.valid_until(_LIMIT), solution.t_reached
+    return f"to {_LIMIT:g} rad {'to the end' if until == end else f'until {until:.4g} s'}"
+
+
+def _scene(solution: Solution) -> str:
+    scene = solution.scene
+    n = len(scene.links)
+    told = f"{n} link{'s'[: n > 1]}, gravity {scene.gravity:.6g} m/s^2"
+    return f"{told}, {_effects(solution)}" if scene.effects else told
 
 
 def _effects(solution: Solution) -> str:

@@ -6,12 +6,14 @@ All lengths here are points of print, except in what is drawn: that is in the ax
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from pendcore.messages import Floats
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 GAPS = np.array([4.0, 6.0, 9.0, 13.0, 18.0, 24.0, 31.0])
 """Gaps between a name and what it names; the first is half a letter."""

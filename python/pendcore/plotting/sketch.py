@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Wedge
-from matplotlib.transforms import Affine2D
 
 from pendcore.messages import Floats
 from pendcore.plotting.labels import Label, place
 from pendcore.plotting.style import Theme, theme_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 MARGIN = 36.0
 """The margin around a drawing for the names at its border, points of print."""
@@ -49,6 +49,8 @@ class Sketch:
 
     def disc(self, at: Floats, radius: float, **how: Any) -> None:
         """Draw a disc; the radius is a share of the size."""
+        from matplotlib.patches import Circle
+
         self.axes.add_patch(
             Circle(
                 tuple(at),
@@ -111,6 +113,9 @@ def number(on: Sketch, at: Floats | Sequence[Floats], link: int, towards: Floats
 
 def rod(on: Sketch, start: Floats, end: Floats) -> None:
     """Draw a link: a bar with round ends."""
+    from matplotlib.patches import FancyBboxPatch
+    from matplotlib.transforms import Affine2D
+
     half, (x, y) = 0.026 * on.size, end - start
     bar = FancyBboxPatch(
         (-half, -half), np.hypot(x, y) + 2 * half, 2 * half,
@@ -130,6 +135,8 @@ def pin(on: Sketch, at: Floats) -> None:
 
 def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
     """Draw what holds the first joint: a bracket on a hatched line, above or below the joint."""
+    from matplotlib.patches import Polygon
+
     a, b = 0.05 * on.size, (0.09 if above else -0.09) * on.size
     corners = at + np.array([[0.0, 0.0], [-a, -b], [a, -b]])
     base, hatch = at + np.array([[-2 * a, -b], [2 * a, -b]]), np.array([0.55 * a, -0.39 * b])
@@ -146,6 +153,8 @@ def ground(on: Sketch, at: Floats, *, above: bool = True) -> None:
 
 def mass_center(on: Sketch, at: Floats) -> None:
     """Draw a mass centre: a disc in quarters."""
+    from matplotlib.patches import Wedge
+
     on.disc(at, 0.022, lw=0.9, zorder=5)
     for first in (0, 180):
         quarter = Wedge(tuple(at), 0.022 * on.size, first, first + 90, color=on.theme.ink, zorder=5)
