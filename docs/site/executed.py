@@ -53,7 +53,7 @@ def execute_page(app: Sphinx, doctree: nodes.document) -> None:
     if example:
         names["__file__"] = example.group(1)
     before = os.getcwd()
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, mpl.rc_context():
         os.chdir(folder)
         sys.path.insert(0, folder)
         try:

@@ -180,7 +180,7 @@ def test_the_figure_has_a_line_a_method_with_its_unit_and_shades_what_is_not_kno
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
         assert line.get_ydata() == pytest.approx(height)
     assert "total length" in ax.get_xlabel()
-    assert unit if y == "time" else ax.get_ylabel() == "right-hand sides (of taylor: series)"
+    assert unit if y == "time" else ax.get_ylabel() == "right-hand sides (of taylor: expansions)"
     (known,) = [p for p in ax.patches if p.get_width()]
     assert known.get_bbox().x1 == pytest.approx(book.uncertainty)
 

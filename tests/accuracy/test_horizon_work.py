@@ -11,6 +11,7 @@ import pendcore as pc
 import pytest
 from chaotic_starts import chaotic_starts
 from matplotlib.figure import Figure
+from pendcore.plotting import LIGHT
 
 BOOK = pc.Scene.textbook()
 CHAOTIC = [-1.2, -0.6]
@@ -87,7 +88,8 @@ def test_what_is_valid_to_the_end_is_marked_as_that(regular: pc.HorizonWork) -> 
     sheet = Figure()
     regular.plot(sheet)
     for axis in sheet.axes:
-        hollow = [x for x in axis.lines if x.get_markerfacecolor() == "w" and len(x.get_xdata())]
+        ground = LIGHT.ground
+        hollow = [x for x in axis.lines if x.get_markerfacecolor() == ground and len(x.get_xdata())]
         assert sum(len(line.get_xdata()) for line in hollow) == 6
     assert "hollow: to the end" in [x.get_text() for x in sheet.legends[0].get_texts()]
 

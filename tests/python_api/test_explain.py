@@ -280,7 +280,7 @@ def test_it_prints_as_a_table_of_plain_numbers_and_fits_into_json():
         "hanging, stable: q = (1.5708, 1.5708) rad\n",
         "upright, unstable: q = (-1.5708, -1.5708) rad\n",
         "  ViscousJoint(joint=1, damping=0.1)",
-        "  motor               A motor in a joint",
+        "  effects that the scene could have: dry joint friction, ",
     ):
         assert words in repr(told)
     again = json.loads(json.dumps(told.to_dict(), allow_nan=False))

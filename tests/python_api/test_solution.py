@@ -233,7 +233,7 @@ COUNTED = [
 def test_it_says_whether_it_is_series_that_were_counted(stiff, method, counted):
     scene = BOOK.replace(effects=[fx.ViscousJoint(joint=2, damping=1e6 / 3)] * stiff)
     run = pc.simulate(scene, q0=[0.8, 1.0], t_span=(0, 1), method=method)
-    assert f" steps, {run.stats.nfev:,} {counted}\n" in str(run)
+    assert str(run).endswith(f" steps, {run.stats.nfev:,} {counted}")
     summary = " ".join(summary_text(facts(run)).split())
     assert f" work {run.stats.nfev:,} {counted} energy" in summary
 

@@ -12,8 +12,8 @@ namespace pendcore {
 /// the second goes on where the first is limited by stability.
 enum class MethodKind { explicit_one, implicit_one, taylor_one, pair };
 
-/// How figures draw a method: a colour of their theme, and matplotlib's terms. A dash may be lengths
-/// of ink and gap, "6 2".
+/// How figures draw a method: a colour of their theme, and matplotlib's terms. A dash may be
+/// lengths of ink and gap, "6 2".
 struct LineStyle {
   std::string_view color = "quiet";
   std::string_view dash = "5 1 1 1 1 1";

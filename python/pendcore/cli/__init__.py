@@ -17,19 +17,13 @@ from pendcore.cli.words import known_words
 
 _EXAMPLES = """
 examples:
-  pendcore run                            the textbook's double pendulum, into out/textbook
-  pendcore run swing.toml                 your own case, into out/swing
-  pendcore run swing.toml --json | jq .energy
-  pendcore explain swing.toml             what it simulates, what not, how fast it moves
-  pendcore plot out/swing/solution.npz -o swing.pdf
-  pendcore show swing.toml                a page that simulates it; -o swing.mp4 for a film
-  pendcore trust out/swing/solution.npz   until when the run is right, how fast its errors grow
-  pendcore cost swing.toml                what accuracy costs on it: error and time of every method
-  pendcore map flips.toml                 a number over a plane of starts, and which pixels are true
-  pendcore derive swing.toml              its equations of motion in symbols, as code, as a report
+  pendcore run                 the textbook's double pendulum, into out/textbook
+  pendcore run swing.toml      your own case, into out/swing
+  pendcore show swing.toml     a page that simulates it; -o swing.mp4 for a film
+pendcore COMMAND --help says more of each.
 
-exit status: 0 fine, 1 the run failed or was interrupted (what it has is written all the same) or
-a file could not be written (the others are), 2 wrong usage, 141 nobody reads what is printed
+exit status: 0 fine, 1 the run or a file failed (all else is written), 2 wrong usage,
+141 nobody reads what is printed
 """
 
 

@@ -154,10 +154,10 @@ def _text(told: Explanation) -> str:
     blocks = [
         [head],
         ["What is simulated, and what it costs in a right-hand side", *_costs(told)],
+        ["What is not simulated", *_absences(told)],
         ["Freedom", *_freedom(told)],
         [f"Equilibria{frozen}", *_equilibria(told)],
         ["How fast", *_rates(told)],
-        ["What is not simulated", *_absences(told)],
         ["Many at once", *_bullet(_of_lanes(told.lanes))],
     ]
     if told.remarks:
@@ -230,11 +230,11 @@ def _rates(told: Explanation) -> Iterator[str]:
 
 
 def _absences(told: Explanation) -> Iterator[str]:
-    for absence in told.not_simulated:
-        name = absence.kind.replace("_", " ") if absence.available else "(no effect yet)"
-        first, *more = wrap(absence.sentence, _WIDTH - 22)
-        yield f"  {name:18}  {first}"
-        yield from (f"{'':22}{line}" for line in more)
+    ready = [x.kind.replace("_", " ") for x in told.not_simulated if x.available]
+    never = [x.sentence.rstrip(".") for x in told.not_simulated if not x.available]
+    if ready:
+        yield from _bullet(f"effects that the scene could have: {', '.join(ready)}")
+    yield from _bullet(f"never: {'; '.join(x[0].lower() + x[1:] for x in never)}")
 
 
 def _of_lanes(methods: tuple[str, ...]) -> str:
@@ -243,9 +243,8 @@ def _of_lanes(methods: tuple[str, ...]) -> str:
     *others, last = methods
     names = f"{', '.join(others)} or {last}" if others else last
     return (
-        f"an ensemble runs several members at once, a lane each, by {names}; it runs them one by "
-        "one with events that are functions of your own, for the largest exponent, and for the "
-        "energy drift if effects do work or lose energy"
+        f"an ensemble runs several members at once, a lane each, by {names}; one by one with "
+        "events of your own, for the largest exponent, and for the drift of energy with losses"
     )
 
 
