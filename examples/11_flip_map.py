@@ -23,5 +23,5 @@ print(turned)
 resolved = turned.resolved()
 print(f"{resolved.mean():.1%} of the pixels are resolved")
 
-image, trust = turned.plot(resolved=resolved)
+image, *marks = turned.plot(resolved=resolved)
 image.figure.savefig("flip_map.png", dpi=120)

@@ -147,7 +147,7 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
 
 
 def _table(told: Description) -> Iterator[str]:
-    yield "| parameter | symbol | unit | default | allowed | |"
+    yield "| parameter | symbol | unit | default | allowed | meaning |"
     yield "|---|---|---|---|---|---|"
     for p in told.parameters:
         default = "needed" if p.required else "none" if p.optional else f"`{p.default!r}`"
@@ -185,7 +185,7 @@ def _toml(effect: Effect) -> str:
 
 def _index() -> str:
     losses = ", ".join(f"`{name}`" for name in sorted(LOSSES))
-    rows = ["| effect | kind | |", "|---|---|---|"]
+    rows = ["| effect | kind | what it is |", "|---|---|---|"]
     for kind, cls in KINDS.items():
         told = cls.description
         rows.append(f"| [{told.name}]({kind}.md) | `{kind}` | {told.sentence} |")

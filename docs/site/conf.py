@@ -67,7 +67,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "pendcore"
 html_static_path = ["_static"]
 html_css_files = ["house.css", "site.css"]
-html_js_files = ["films.js"]
+html_js_files = ["site.js"]
 html_math_renderer = "mathml"
 html_favicon = "_static/favicon.svg"
 html_context = {"default_mode": "auto"}
@@ -98,8 +98,9 @@ cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
 
 def quiet(app: Sphinx, failure: Exception | None) -> None:
     """Take the theme's messages out of the console of whoever reads the site."""
-    for script in Path(app.outdir).glob("_static/scripts/pydata-sphinx-theme.js"):
-        script.write_text(script.read_text().replace("console.log(", "void ("))
+    for name in ("_static/scripts/pydata-sphinx-theme.js", "search.html"):
+        path = Path(app.outdir) / name
+        path.write_text(path.read_text().replace("console.log(", "void ("))
 
 
 def setup(app: Sphinx) -> None:

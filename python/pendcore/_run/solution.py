@@ -699,8 +699,9 @@ class Solution:
         ``"path"``         the path of the tip in the plane, with the chain at the start and the end
         ``"phase"``        the rate of each link, rad/s, over its angle, rad
         ``"section"``      a Poincare section: rate over angle of a ``link`` where an ``event``
-                           happened, an index into ``sol.events``
-        ``"strip"``        the chain at the times ``t``, s, (k,), side by side
+                           happened, an index into ``sol.events``; without one, of the first link
+                           whose angle differs there
+        ``"strip"``        the chain at the times ``t``, s, (k,), four in a row
         ``"free_bodies"``  each link by itself with the forces on it, N, at the time ``t``, s;
                            couples in joints are not drawn
         =================  ========================================================================
@@ -711,17 +712,19 @@ class Solution:
             The figure.
         ax : Axes or array of Axes, optional
             One axes; for angles and rates also one for each link, for reactions one for each joint,
-            for energy two with a ledger. Default: a new figure of pyplot's, which is not shown.
+            for energy three with a ledger. Default: a new figure of pyplot's, which is not shown.
             Where curves are drawn already, the next ones are dashed.
         label : str, optional
             Name of this solution in the legend.
         horizon : float, optional
-            rad. What lies past the time at which the estimated error passes it is shaded or pale
+            rad. What lies past the time at which the estimated error passes it is shaded or pale,
+            and the legend says that time
             (`valid_until`: that takes further runs, when it is first asked for).
         t, event, link
-            As above. Defaults: eight times along the curves, or where they begin; 0; 1.
+            As above. Defaults: eight times along the curves, or where they begin; 0; as above.
         **line_properties
-            Passed on to matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``.
+            Passed on to matplotlib's ``Line2D``, such as ``color``, ``linestyle`` or ``linewidth``;
+            free bodies have no lines.
 
         Returns
         -------
@@ -808,7 +811,7 @@ class Solution:
         *others : Solution
             More runs in the same film: on top of this one, or with ``beside`` next to it.
         names : tuple of str, optional
-            What the legend calls the runs. Default: their own names, if there are several.
+            What the runs are called beside their tips. Default: their names, if there are several.
         speed : float
             How fast time passes; 1 is true time, 0.25 slow motion.
         fps : float
@@ -816,10 +819,11 @@ class Solution:
         trace : float, optional
             s of the run that the trace of the tip shows; None draws none.
         reactions : bool
-            Whether arrows show the force on each link at its joint; the longest is that of the
-            largest force in the film.
+            Whether arrows show the force on each link at its joint, and curves their sizes, N.
+            Arrows are as long as forces are large, within limits: the shortest can be seen, and
+            the largest twentieth of the forces are as long as each other.
         energy : bool
-            Whether a strip below shows the energies of this run.
+            Whether the energies of this run are shown over time, in place of the angles.
         horizon : float, optional
             rad; a run is drawn pale past the time until which its error is below this
             (`Solution.valid_until`, which takes further runs).

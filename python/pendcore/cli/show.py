@@ -48,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--reactions", action="store_true", help="show the forces at the joints as arrows"
     )
-    parser.add_argument("--energy", action="store_true", help="show the energies below")
+    parser.add_argument("--energy", action="store_true", help="show the energies over time")
     parser.add_argument(
         "--horizon",
         type=float,
