@@ -46,7 +46,7 @@ test-all: lint tidy build-bench page $(DONE)/test-requirements $(DONE)/fuzz-requ
 	$(PYTEST) --full
 	$(MAKE) sanitize SHARE=3
 	$(MAKE) elsewhere wheel site CONTRACTED=--contracted
-	$(PYTEST) tests/page/test_site.py
+	$(PYTEST) --full tests/page/test_site.py
 	$(MAKE) campaign OF=readers
 	$(MAKE) campaign OF=fuzz CASES=20000
 

@@ -83,9 +83,7 @@ def latex(law: str) -> str:
         letter = LETTERS.get(name, name)
         return letter + (f"_{{{below}}}" if below else "") + (f"^{{{sign}}}" if sign else "")
 
-    bars = re.sub(
-        r"abs\(([^()]+)\)", r"\\lvert \1\\rvert", law.replace(" | ", r" \;\;\text{or}\;\; ")
-    )
+    bars = re.sub(r"abs\(([^()]+)\)", r"\\lvert \1\\rvert", law)
     told = re.sub(r"(?<![\\{])\b" + _WORD.pattern, written, bars)
     told = re.sub(r"\^(\w)", r"^{\1}", told).replace("  ", r" \quad ")
     return _TEXTS.sub(r"\\text{", told).replace("<=", r"\le").replace("+-", r"\pm")
@@ -103,9 +101,10 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield ""
     yield told.sentence
     yield ""
-    yield "$$"
-    yield latex(told.law)
-    yield "$$"
+    first, *others = told.law.split(" | ")
+    begin = first.partition("=")[0]
+    for law in (first, *(f"or  {begin}= {other}" for other in others)):
+        yield f"$$\n{latex(law)}\n$$\n"
     yield ""
     if told.account in CAVEATS:
         yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."

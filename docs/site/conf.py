@@ -98,6 +98,8 @@ cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
 
 def quiet(app: Sphinx, failure: Exception | None) -> None:
     """Take the theme's messages out of the console of whoever reads the site."""
+    if failure:
+        return
     for name in ("_static/scripts/pydata-sphinx-theme.js", "search.html"):
         path = Path(app.outdir) / name
         path.write_text(path.read_text().replace("console.log(", "void ("))

@@ -54,6 +54,17 @@ def _run(file: Path, static: Path) -> None:
     made = all((static / f"{file.stem}{kind}").is_file() for kind in (".mp4", ".html"))
     if done.returncode or done.stderr or not made:
         raise RuntimeError(f"{file.name}: {done.stderr[-2000:] or 'it wrote no film or no page'}")
+    # The card of the gallery shows the chain alone: the square on the left, but for chains side by
+    # side; and a picture until it plays.
+    film, card = static / f"{file.stem}.mp4", static / f"{file.stem}_card.mp4"
+    square = "" if "beside=True" in file.read_text() else "crop=ih:ih:0:0,"
+    _convert(film, "-vf", f"{square}scale=-2:360", "-crf", "26", str(card))
+    _convert(card, "-frames:v", "1", str(card.with_suffix(".jpg")))
+
+
+def _convert(film: Path, *options: str) -> None:
+    command = ["ffmpeg", "-loglevel", "error", "-y", "-i", str(film), *options]
+    subprocess.run(command, check=True)
 
 
 def _film_of_effect(told: Any, path: Path) -> None:
@@ -63,9 +74,12 @@ def _film_of_effect(told: Any, path: Path) -> None:
         : told.examples.splitlines().index(told.calls[0]) + 1
     ]
     exec("\n".join(before), names)
-    scene = pc.Scene.textbook().replace(effects=[eval(call, names)])
-    sol = pc.simulate(scene, (0, 6), [0.5, 1.0], on_failure="ignore")
-    sol.to_video(path, size=(640, 360))
+    free = pc.Scene.textbook()
+    scene = free.replace(effects=[eval(call, names)])
+    sol, without = (
+        pc.simulate(one, (0, 6), [0.5, 1.0], on_failure="ignore") for one in (scene, free)
+    )
+    sol.to_video(path, without, names=("with it", "without"), size=(640, 360))
 
 
 def add_film(app: Sphinx, page: str, source: list[str]) -> None:
@@ -73,7 +87,7 @@ def add_film(app: Sphinx, page: str, source: list[str]) -> None:
     name = page.removeprefix("effects/")
     film = Path(app.confdir) / FILMS / f"effect_{name}.mp4"
     if page != name and film.is_file():
-        shown = _film(Scene(f"effect_{name}", name.replace("_", " "), "", ""), "../")
+        shown = _film(f"effect_{name}", name.replace("_", " "))
         title, rest = source[0].split("\n", 1)
         source[0] = f"{title}\n\n```{{raw}} html\n{shown}\n```\n{rest}"
 
@@ -90,12 +104,20 @@ def _read(file: Path) -> Scene:
     return Scene(file.stem, title.rstrip("."), about.strip(), code)
 
 
-def _film(scene: Scene, place: str) -> str:
-    """Return the film as it plays in a page; it waits where less motion is wanted."""
-    source = f"{place}{FILMS}/{scene.name}.mp4"
+def _film(name: str, title: str) -> str:
+    """Return a film as it plays in a page; it waits where less motion is wanted."""
     return (
-        f'<video class="film" src="{source}" muted loop playsinline controls preload="metadata" '
-        f'aria-label="{scene.title}"></video>'
+        f'<video class="film" src="../{FILMS}/{name}.mp4" muted loop playsinline controls '
+        f'preload="metadata" aria-label="{title}"></video>'
+    )
+
+
+def _card(scene: Scene) -> str:
+    """Return the small film of a scene, with a picture until it plays."""
+    source = f"../{FILMS}/{scene.name}_card"
+    return (
+        f'<video class="film card-film" src="{source}.mp4" poster="{source}.jpg" muted loop '
+        f'playsinline preload="none" aria-label="{scene.title}"></video>'
     )
 
 
@@ -105,7 +127,7 @@ def _page(scene: Scene) -> str:
 {scene.about}
 
 ```{{raw}} html
-{_film(scene, "../")}
+{_film(scene.name, scene.title)}
 ```
 
 <p><a class="reference external" href="../{FILMS}/{scene.name}.html">Change it in your
@@ -126,8 +148,10 @@ def _index(scenes: list[Scene]) -> str:
 :link-type: doc
 
 ```{{raw}} html
-{_film(scene, "../").replace(" controls", "")}
+{_card(scene)}
 ```
+
+{scene.about.partition(". ")[0].partition(": ")[0].rstrip(".")}.
 :::
 """
         for scene in scenes

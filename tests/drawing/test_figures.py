@@ -54,6 +54,28 @@ def test_the_energy_has_its_ledger_below(sol):
     assert len(bare.plot("energy", axes())) == 3
 
 
+def test_a_ledger_with_nothing_booked_has_its_residual_alone():
+    run = pc.simulate(BOOK, (0, 2), 0.5, ledger=True)
+    lines = run.plot("energy", axes(2))
+    assert [line.axes.get_ylabel() for line in lines[2:]] == ["energy (J)", "residual (J)"]
+
+
+def test_given_axes_keep_their_labels_and_ticks(sol):
+    left, right = Figure().subplots(1, 2)
+    sol.plot("path", left)
+    sol.plot("angles", right)
+    assert (right.get_xlabel(), right.get_ylabel()) == ("t (s)", "$q$ (deg)")
+    assert right.yaxis.get_tick_params()["labelleft"]
+
+
+@pytest.mark.parametrize("rate", [0.0, 3.0])
+def test_bodies_without_weight_have_no_arrow_of_it(rate):
+    free = pc.simulate(BOOK.replace(gravity=0.0), (0, 1), [0.5, 0.9], rate)
+    texts = [text.get_text() for text in free.plot("free_bodies", axes())]
+    assert not [text for text in texts if "g" in text]
+    assert bool([text for text in texts if "F_" in text]) == bool(rate)
+
+
 def test_the_path_is_that_of_the_tip_and_y_points_down(sol):
     ax = axes()
     (line,), (other,) = (sol.plot("path", ax) for _ in range(2))
@@ -157,7 +179,7 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
             assert shade.get_x() == pytest.approx(until)
             assert shade.get_x() + shade.get_width() == pytest.approx(30)
         said = [text.get_text() for text in ax[0].get_legend().get_texts()]
-        assert said[-1] == f"right to 0.1 rad until {until:.4g} s"
+        assert said[-1] == f"not right to 0.1 rad after {until:.4g} s"
     for what in ("path", "phase"):
         line = chaotic.plot(what, axes(), horizon=0.1)[0]
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())

@@ -89,6 +89,26 @@ def test_arrows_neither_vanish_nor_leave_the_picture(sol):
     assert np.mean(np.array(lengths) > 0.39 * 2) == pytest.approx(0.05, abs=0.01)
 
 
+@pytest.mark.parametrize("span", [(5, 7), (7, 5), (-7, -5)])
+def test_the_curves_of_a_film_have_the_times_of_the_run(sol, span):
+    film = stage(pc.simulate(sol.scene, span, 0.8), energy=True)
+    (curves,) = [one for one in film.figure.axes if one.get_ylabel() == "energy (J)"]
+    assert sorted(curves.get_xlim()) == sorted(span)
+
+
+def test_no_text_of_a_film_is_cut_off(sol):
+    fast = pc.simulate(sol.scene, (0, 5), [-0.3, -0.8])
+    for given in ({"reactions": True}, {"reactions": True, "beside": True}, {"energy": True}):
+        film = stage(*[fast] * (1 + ("beside" in given)), **given)
+        film.figure.canvas.draw()
+        for k in range(0, len(film.times), 10):
+            for text in film.show(k):
+                if isinstance(text, Text) and text.get_text():
+                    box = text.get_window_extent()
+                    assert (box.min >= -1).all(), (given, k, text)
+                    assert (box.max <= film.figure.bbox.max + 1).all(), (given, k, text)
+
+
 def test_names_stand_beside_their_tips_and_not_on_each_other(sol):
     film = stage(sol, sol, sol, names=("one", "two", "three"))
     texts = [x for x in film.show(20) if isinstance(x, Text)][:3]

@@ -89,6 +89,16 @@ def test_the_sheet_is_a_style_of_matplotlib_and_dark_axes_have_bright_curves():
     assert theme_of(plt.figure().subplots()) is LIGHT
 
 
+def test_a_dark_ground_of_the_users_has_texts_that_can_be_read():
+    with plt.style.context("dark_background"):
+        axis = pc.Case.textbook().simulate().plot()[0].axes
+    ticks = axis.yaxis.get_tick_params()["labelcolor"]
+    assert min(contrast(color, "black") for color in (ticks, axis.yaxis.label.get_color())) > 4.5
+    clear = plt.figure().subplots()
+    clear.set_facecolor("none")  # the ground is the figure's
+    assert theme_of(clear) is LIGHT
+
+
 def test_what_the_user_has_set_in_matplotlib_stays():
     sol = pc.Case.textbook().simulate()
     with plt.rc_context({"font.size": 17.0, "axes.spines.top": True}):
@@ -146,6 +156,7 @@ def test_no_text_is_cut_off_or_lies_on_another_or_on_a_curve(what, size, written
         assert not box.overlaps(there), (text, other)
     for axes in figure.axes:
         for line in axes.lines:
-            points = line.get_transform().transform(np.column_stack(line.get_data()))
+            path = line.get_transform().transform_path(line.get_path())
             for text, box in inner.items():
-                assert not box.count_contains(points), (text, line)
+                # A line of pieces that meet is looked at piece by piece: bodies are not filled.
+                assert not path.intersects_bbox(box, filled=False), (text, line)

@@ -349,7 +349,7 @@ def test_two_runs_are_shown_side_by_side(page, sol):
         assert page.text("other-name") == name
         assert page.ask("[...pendcorePage.other.state(8)]") == run(8.0).tolist()
         dashed = page.ask("pendcorePage.curves.angles.curves.slice(2)")
-        assert [one["name"] for one in dashed] == ["other q1", "other q2"]
+        assert [one["name"] for one in dashed] == ["other q₁", "other q₂"]
         assert dashed[1]["y"][-1] == pytest.approx(np.degrees(run(8.0)[1]), rel=1e-12)
     page.do("pendcorePage.given.gravity = 1.6; pendcorePage.changed()")
     assert page.ask("[...pendcorePage.other.state(8)]") == sol(8.0).tolist()

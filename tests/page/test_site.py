@@ -28,6 +28,13 @@ axe.run({ iframes: false }).then(told);
 """
 
 
+@pytest.fixture(autouse=True)
+def in_full(pytestconfig):
+    """Look at the site where all is looked at: it takes minutes."""
+    if not pytestconfig.getoption("--full"):
+        pytest.skip("takes --full")
+
+
 def test_no_page_is_wider_than_a_phone_or_writes_to_the_console(browser, sized):
     sized("phone")
     pages = [page for page in SITE.rglob("*.html") if "_static" not in page.parts]

@@ -801,6 +801,8 @@ class Solution:
     ) -> Path:
         """Write a film of the run, in true time; return where it is.
 
+        In a wide frame, curves stand beside the chain: the angles, unless others are asked for.
+
         A run without dense output is simulated anew for it, or refused in the words of ``sol(t)``.
 
         Parameters
@@ -819,14 +821,15 @@ class Solution:
         trace : float, optional
             s of the run that the trace of the tip shows; None draws none.
         reactions : bool
-            Whether arrows show the force on each link at its joint, and curves their sizes, N.
+            Whether arrows show the force on each link at its joint, and, of a single run, curves
+            show their sizes, N.
             Arrows are as long as forces are large, within limits: the shortest can be seen, and
             the largest twentieth of the forces are as long as each other.
         energy : bool
             Whether the energies of this run are shown over time, in place of the angles.
         horizon : float, optional
             rad; a run is drawn pale past the time until which its error is below this
-            (`Solution.valid_until`, which takes further runs).
+            (`Solution.valid_until`, which takes further runs); the film says that time.
         beside : bool
             Whether several runs are drawn side by side.
         size : (int, int), optional

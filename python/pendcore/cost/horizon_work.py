@@ -128,8 +128,7 @@ class HorizonWork:
         ``figure`` is an empty one of matplotlib's. Default: a new one of pyplot's.
         """
         if figure is None:
-            by_digits, by_cost = new_axes((9.6, 4.2), columns=2)
-            by_cost.sharey(by_digits)
+            by_digits, by_cost = new_axes((9.6, 4.2), columns=2, sharey=True)
             figure = cast("Figure", by_digits.figure)
         else:
             by_digits, by_cost = figure.subplots(1, 2, sharey=True)

@@ -95,15 +95,16 @@ function interval(value, range) {
 }
 
 const LETTERS = { tau: "τ", phid: "φ̇", phi: "φ", omega: "ω", rho: "ρ", phase: "ψ" };
-const UPRIGHT = new Set("sin exp sgn at an or is of the air constant".split(" "));
+const UPRIGHT = new Set("sin exp sgn at an or is of to the air constant".split(" "));
 
 /** A law as the core tells it, in HTML: letters in italics, indices, powers, signs. */
 export function formula(law) {
   return law
     .replaceAll("<=", "≤")
+    .replaceAll("+-", "±")
     .replaceAll("&", "&amp;")
     .replace(/abs\(([^()]+)\)/g, "|$1|")
-    .replace(/(^|[ (=])-(?=[ (\w])/g, "$1−")
+    .replace(/(^|[ (=])-(?=[ (|\w])/g, "$1−")
     .replace(/[A-Za-z]+(?=[\d_^ ,;)(/+|*-]|$)/g, (word) =>
       LETTERS[word] || (word.length < 3 && !UPRIGHT.has(word))
         ? `<i>${LETTERS[word] ?? word}</i>`

@@ -99,7 +99,7 @@ export class Curves {
     const ofOther = other ? other.states(times) : [];
     const curves = (rows, name, dash) =>
       Array.from({ length: rows.length ? run.n : 0 }, (_x, i) => ({
-        name: `${name}q${i + 1}`,
+        name: `${name}q${subscript(i + 1)}`,
         color: LINKS[i % LINKS.length],
         x: times,
         y: rows.map((state) => (state[i] * 180) / Math.PI),
@@ -144,7 +144,9 @@ export class Curves {
   choose() {
     const { run, times, states } = this;
     const [x, y] = this.menus.map((menu) => this.offered.find(({ label }) => label === menu.value));
-    this.chosen.names = [x.label, y.label];
+    this.chosen.names = [x, y].map((one) =>
+      one.isAngle && !x.isTime ? one.label.replace(" (", ", within a turn (") : one.label,
+    );
     this.chosen.isDown = y.isDown === true;
     this.isOverTime = x.isTime === true;
     const isTogether = x.isTogether || y.isTogether;
@@ -183,6 +185,11 @@ export class Curves {
     const isRight = past === null || this.run.direction * (t - past) <= 0;
     this.chosen.draw(this.isOverTime ? { past, now: t } : { points: isRight ? points : [] });
   }
+}
+
+/** A whole number as an index. */
+function subscript(number) {
+  return String(number).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)]);
 }
 
 /** Points as x and y, with a gap where an angle jumps by a turn. */

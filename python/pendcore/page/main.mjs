@@ -17,6 +17,7 @@ const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // in each, a link t
 const SETTLED = 300; // ms, after which the address follows a change
 const FORCES = 400; // times at which the largest force of a run is looked for
 const GHOST = 1e-9; // rad
+const FINDING_OUT = "how far it is right is being found out";
 const NEIGHBOURS = { count: 1000, spread: 1e-5, rate: 60 };
 
 /** @type {(id: string) => any} */
@@ -37,8 +38,6 @@ class Page {
   isMoved = false;
   settling = undefined;
   question = 0;
-  frames = 0;
-  since = 0;
   before = undefined;
   later = undefined;
   /** Why the address was refused, if it was. */
@@ -47,6 +46,8 @@ class Page {
   /** Whether the case was refused, so that the picture is older than it. */
   isRefused = false;
   comparisons = {};
+  /** What is said as long as it is not known until when the run is right. */
+  unknown = FINDING_OUT;
 
   constructor(core, bytes) {
     this.core = core;
@@ -150,6 +151,7 @@ class Page {
     this.run?.free();
     this.run = run;
     this.isRefused = false;
+    this.unknown = this.core ? FINDING_OUT : "how far it is right is not known";
     this.say(run.success ? "" : run.message);
     this.t = run.within(this.t);
     const time = byId("time");
@@ -294,7 +296,7 @@ class Page {
           this.draw();
         }
       } catch (error) {
-        if (!isStale()) this.#sayTrust("", `how far it is right is not known: ${error.message}`);
+        if (!isStale()) this.unknown = `how far it is right is not known: ${error.message}`;
       }
     }, 150);
   }
@@ -304,7 +306,7 @@ class Page {
     const until = this.validUntil;
     const [kind, words] =
       until === null
-        ? ["", "how far it is right is being found out"]
+        ? ["", this.unknown]
         : this.#isRight(this.run.end) || Math.abs(until - this.run.end) < 1e-9 * Math.abs(until)
           ? ["right", `right to ${data.limit} rad to the end`]
           : this.#isRight(this.t)
@@ -328,14 +330,6 @@ class Page {
   frame(now) {
     const passed = Math.min((now - (this.before ?? now)) / 1000, 0.25);
     this.before = now;
-    ++this.frames;
-    if (now - this.since > 1000) {
-      const rate = (1000 * this.frames) / (now - this.since);
-      if (this.neighbours && this.isPlaying) {
-        byId("rate").textContent = `${rate.toFixed(0)} frames a second`;
-      }
-      [this.since, this.frames] = [now, 0];
-    }
     if (this.isMoved) {
       this.isMoved = false;
       this.changed();

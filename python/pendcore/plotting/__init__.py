@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pendcore.plotting.axes import grid, legend_above, new_axes
-from pendcore.plotting.map import Axis, Shown, draw_map, is_wide
+from pendcore.plotting.map import MAP_SIZE, Axis, Shown, draw_map, is_wide
 from pendcore.plotting.plot import KINDS, save_figure
 from pendcore.plotting.style import DARK, LIGHT, Theme, as_drawn, css_variables, sheet, theme_of
 
 __all__ = [
-    "DARK", "KINDS", "LIGHT", "Axis", "Shown", "Theme", "as_drawn", "css_variables", "draw_map",
-    "grid", "is_wide", "legend_above", "new_axes", "save_figure", "sheet", "theme_of",
+    "DARK", "KINDS", "LIGHT", "MAP_SIZE", "Axis", "Shown", "Theme", "as_drawn", "css_variables",
+    "draw_map", "grid", "is_wide", "legend_above", "new_axes", "save_figure", "sheet", "theme_of",
 ]  # fmt: skip

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_LONG = 22
+"""Letters in a name, of which there is room for two in a row."""
 NewFigure: TypeAlias = Callable[..., "Figure"]
 """Makes a new figure: pyplot's, or one of its own."""
 
@@ -71,6 +73,11 @@ class Request:
             return new_axes(size, rows, new_figure=self.new_figure)
         return checked_axes(self.ax, counts, which)
 
+    def label_outer(self, axes: Sequence[Axes]) -> None:
+        """Leave what new axes share to the lowest of them; given axes keep their labels."""
+        for axis in axes if self.ax is None else ():
+            axis.label_outer()
+
     def name_of(self, curve: str) -> str:
         """Return what the legend calls a curve: with the solution's label, if that has one."""
         return curve if self.label is None else f"{curve}, {self.label}"
@@ -83,12 +90,18 @@ class Request:
         for axis in axes:
             colors = theme_of(axis)
             how: dict[str, Any] = {"facecolor": colors.line, "alpha": 0.6, "zorder": 0}
-            axis.axvspan(self.valid_until, end, label=self.until(), **how)
+            axis.axvspan(self.valid_until, end, label=self.after(), **how)
 
     def until(self) -> str:
-        """Return the sentence that says until when a run is right."""
-        right = "right" if self.horizon is None else f"right to {self.horizon:g} rad"
-        return f"{right} until {self.valid_until:.4g} s"
+        """Return the words that say until when a run is right."""
+        return f"{self._right()} until {self.valid_until:.4g} s"
+
+    def after(self) -> str:
+        """Return the words for what lies after that."""
+        return f"not {self._right()} after {self.valid_until:.4g} s"
+
+    def _right(self) -> str:
+        return "right" if self.horizon is None else f"right to {self.horizon:g} rad"
 
 
 def new_axes(
@@ -108,12 +121,15 @@ def new_axes(
     return axes
 
 
-def legend_above(axis: Axes, handles: Sequence[Artist] | None = None) -> None:
-    """Name the curves, or the handles, above the axes, where no curve is."""
+def legend_above(axis: Axes, handles: Sequence[Artist] | None = None, columns: int = 3) -> None:
+    """Name the curves, or the handles, above the axes, where no curve is, row by row."""
     handles = axis.get_legend_handles_labels()[0] if handles is None else handles
     if handles:
+        is_long = any(len(str(handle.get_label())) > _LONG for handle in handles)
+        columns = min(columns, 2 if is_long else 3)
+        by_rows = [handle for k in range(columns) for handle in handles[k::columns]]
         axis.legend(
-            handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3,
+            handles=by_rows, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns,
             borderaxespad=0.2, borderpad=0.0, frameon=False, fontsize="small",
         )  # fmt: skip
 
@@ -157,19 +173,6 @@ def whole_names(
     known = {*ArtistInspector(artist).get_setters(), *others} - ours
     require_known(plot.__qualname__, whole, [*own, *sorted(known)])
     return whole
-
-
-def in_plane(axis: Axes, *, is_fitted: bool = False) -> None:
-    """Let the axes show the plane as the project has it: to scale, with y downwards.
-
-    Axes that are fitted are no larger than what is drawn; others show more of the plane.
-    """
-    axis.set_aspect("equal", adjustable="box" if is_fitted else "datalim")
-    if not axis.yaxis_inverted():
-        axis.invert_yaxis()
-    axis.set_xlabel("x (m)")
-    axis.set_ylabel("y (m), downwards")
-    grid(axis)
 
 
 def grid(axis: Axes) -> None:

@@ -52,10 +52,8 @@ class GrowingCurves:
         self._lines = [line for axis in axes for line in axis.lines]
         self._data = [np.array(line.get_data()) for line in self._lines]
         self._direction = 1.0 if runs[0].t_reached >= runs[0].t_span[0] else -1.0
-        ink = [theme_of(axis).ink for axis in axes]
-        self._now = [axis.axvline(color=ink[0], linewidth=1.0) for axis in axes]
-        for axis, line in zip(axes, self._now, strict=True):
-            line.set_xdata([axis.get_xlim()[0]] * 2)
+        begin_at = runs[0].t_span[0]
+        self._now = [axis.axvline(begin_at, color=theme_of(axis).ink, lw=1.0) for axis in axes]
         self.artists: list[Artist] = [*self._lines, *self._now]
 
     def show(self, time: float) -> None:
@@ -73,6 +71,8 @@ def _draw_last_angles(runs: Sequence[Solution], axis: Axes) -> None:
     for k, one in enumerate(runs):
         curve = curve_of(one)
         axis.plot(curve.t, np.rad2deg(curve.q[:, -1]), color=theme.runs[k % len(theme.runs)])
-    axis.set(xlabel="t (s)", ylabel=f"$q_{{{len(runs[0].scene.links)}}}$ (deg)")
+    n = {len(one.scene.links) for one in runs}
+    name = f"$q_{{{n.pop()}}}$" if len(n) == 1 else "last $q$"
+    axis.set(xlabel="t (s)", ylabel=f"{name} (deg)")
     axis.margins(x=0)
     grid(axis)

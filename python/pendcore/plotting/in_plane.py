@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pendcore.messages import Floats, whole_number
-from pendcore.plotting.axes import Request, grid, in_plane, legend_above, point_style
+from pendcore.plotting.axes import Request, grid, legend_above, point_style
 from pendcore.plotting.curve import curve_of
 from pendcore.plotting.style import DASHES, theme_of
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 _SIZE = (5.4, 5.4)
 """inches"""
+_GID = "a curve of a run"
+"""Marks the lines by which dashes and colours are counted."""
 
 
 def draw_path(asked: Request) -> list[Artist]:
@@ -25,14 +27,19 @@ def draw_path(asked: Request) -> list[Artist]:
     places = asked.solution.scene.positions(t, q)
     axis = asked.one_axes(_fitting(places))
     theme = theme_of(axis)
-    color = theme.links[(len(q[0]) - 1 + len(axis.lines) // 3) % len(theme.links)]
+    color = theme.links[(len(q[0]) - 1 + _count(axis)) % len(theme.links)]
     ends = (places[0], theme.lost, "start"), (places[-1], theme.ink, "end")
     for pose, shade, name in ends:
-        how: dict[str, Any] = {"color": shade, "label": f"_{name}" if asked.label else name}
+        is_named = asked.label is None and _count(axis) == 0
+        how: dict[str, Any] = {"color": shade, "label": name if is_named else f"_{name}"}
         axis.plot(*pose.T, "o-", linewidth=1.4, markersize=3.5, zorder=1.5, **how)
-    ours = {"color": color, "label": asked.label or "tip"}
+    ours = {"color": color, "label": asked.label or ("_tip" if _count(axis) else "tip")}
     lines = _draw(axis, t, places[:, -1], asked, ours)
-    in_plane(axis, is_fitted=asked.ax is None)
+    # New axes are as large as what is drawn; others show more of the plane.
+    axis.set_aspect("equal", adjustable="box" if asked.ax is None else "datalim")
+    axis.yaxis.set_inverted(True)
+    axis.set(xlabel="x (m)", ylabel="y (m), downwards")
+    grid(axis)
     legend_above(axis)
     return lines
 
@@ -42,7 +49,7 @@ def draw_phase(asked: Request) -> list[Artist]:
     axis = asked.one_axes(_SIZE)
     t, q, qd, _ = curve_of(asked.solution)
     colors = theme_of(axis).links
-    dashes = DASHES[len(axis.lines) // q.shape[1] % len(DASHES)]
+    dashes = DASHES[_count(axis) // q.shape[1] % len(DASHES)]
     lines: list[Artist] = []
     for i, curve in enumerate(np.stack([q, qd], axis=-1).swapaxes(0, 1)):
         ours = {"color": colors[i % len(colors)], "label": asked.name_of(f"link {i + 1}")}
@@ -77,6 +84,11 @@ def draw_section(asked: Request) -> list[Artist]:
     return [*lines]
 
 
+def _count(axis: Axes) -> int:
+    """Return how many curves of runs are on the axes already."""
+    return sum(line.get_gid() == _GID for line in axis.lines)
+
+
 def _moving(angles: Floats) -> int:
     """Return the first link whose angle is not the same at every event, or 1."""
     spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
@@ -97,11 +109,11 @@ def _draw(
     how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
     last = t[-1] if asked.valid_until is None else asked.valid_until
     right = t <= last if t[-1] >= t[0] else t >= last
-    lines = axis.plot(*points[right].T, **how)
+    lines = axis.plot(*points[right].T, gid=_GID, **how)
     if not right.all():
         past = points[max(int(right.sum()) - 1, 0) :]
         known = {line.get_label() for line in axis.lines}
-        said = f"pale: {asked.until()}, not after"
+        said = asked.after()
         pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
         axis.plot(*past.T, label="_" if said in known else said, **pale)
     return [*lines]

@@ -15,7 +15,7 @@ from pendcore.reducers import FirstEvent
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
-SIZE = (6.4, 5.2)
+MAP_SIZE = (6.4, 5.2)
 """inches"""
 
 Mask = npt.NDArray[np.bool_]
@@ -61,7 +61,7 @@ def plot(
         given = whole_names(Ensemble.plot, Line2D, properties)
     else:
         given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
-    axis = new_axes(SIZE)[0] if ax is None else checked_axes(ax, (1,), "")[0]
+    axis = new_axes(MAP_SIZE)[0] if ax is None else checked_axes(ax, (1,), "")[0]
     if dimensions == 1:
         return _draw_curve(axis, axis_of(found, 0), shown, mask, given)
     return draw_map(axis, axis_of(found, 0), axis_of(found, 1), shown, mask, given)
@@ -116,8 +116,10 @@ def axis_of(found: Ensemble, k: int) -> Axis:
         for i in range(starts.shape[-1]):
             given[f"{name}[{i + 1}]"], units[f"{name}[{i + 1}]"] = starts[..., i], unit
     for name, values in given.items():
+        if not values.size:
+            break
         along = np.moveaxis(values, k, 0).reshape(values.shape[k], -1)
-        first = along[:, 0] if along.size else along.ravel()
+        first = along[:, 0]
         steps = np.diff(first)
         is_monotone = len(first) > 1 and ((steps > 0).all() or (steps < 0).all())
         if is_monotone and (along == first[:, None]).all():

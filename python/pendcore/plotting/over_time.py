@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import cycle
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -56,18 +55,17 @@ def draw_energy(asked: Request) -> list[Artist]:
     """Draw kinetic, potential and total energy, J, and below them the ledger and its residual."""
     curve = curve_of(asked.solution)
     energy = curve.energy()
-    has_ledger = energy.ledger is not None
-    axes = asked.stacked_axes(
-        (3,) if has_ledger else (1,), "for the energies, the ledger and its residual"
-    )
+    booked = {} if energy.ledger is None else dict(energy.ledger.items())
+    losses = () if energy.ledger is None else energy.ledger.losses
+    residual = booked.pop("residual", None)
+    count = 1 + bool(booked) + (residual is not None)
+    axes = asked.stacked_axes((count,), "for the energies, the ledger and its residual")
     theme = theme_of(axes[0])
     panels = {"energy (J)": _energies(energy, theme)}
-    if energy.ledger is not None:
-        booked = dict(energy.ledger.items())
-        residual = booked.pop("residual")
-        losses = energy.ledger.losses
+    if booked:
         parts = {f"{x} (lost)" if x in losses else x: y for x, y in booked.items()}
         panels["work and loss (J)"] = with_sum(parts, {}, theme)
+    if residual is not None:
         panels["residual (J)"] = {"residual": (residual, theme.ink)}
     return _draw(asked, axes, curve.t, panels, named=2)
 
@@ -81,15 +79,16 @@ def draw_energies(asked: Request) -> list[Artist]:
 
 
 def draw_force_sizes(asked: Request, percentile: float) -> list[Artist]:
-    """Draw the size of the force at each joint, N, in its link's colour, on one axes.
+    """Draw the size of the force at each joint, or the first six, N, on one axes.
 
     Peaks leave the axes where they are far above what a percentile of the sizes is.
     """
     t, q, qd, _ = curve_of(asked.solution)
     sizes = np.hypot(*np.moveaxis(asked.solution.scene.reactions(t, q, qd), -1, 0)).T
     axes = asked.stacked_axes((1,), "")
-    colors = cycle(theme_of(axes[0]).links)
-    curves = {f"$|{force_name(i, i + 1)}|$": (x, next(colors)) for i, x in enumerate(sizes)}
+    colors = theme_of(axes[0]).links
+    few = list(enumerate(sizes))[: len(colors)]  # the first, where there are many joints
+    curves = {f"$|{force_name(i, i + 1)}|$": (x, colors[i]) for i, x in few}
     lines = _draw(asked, axes, t, {"force (N)": curves}, named=1)
     typical = float(np.percentile(sizes.max(axis=0), percentile))
     if sizes.max() > 1.5 * typical:
@@ -158,9 +157,10 @@ def _draw(
             lines += axis.plot(t, values, **(ours | asked.properties))
         axis.set_ylabel(y_label)
         _dress(axis, least_span)
+    asked.label_outer(axes)
     asked.shade(axes)
-    for axis in axes[: max(named, 1)]:
-        legend_above(axis)
+    for axis, curves in zip(axes[: max(named, 1)], panels.values(), strict=False):
+        legend_above(axis, columns=max(len(curves), 2))  # a row for each run
     return lines
 
 
@@ -169,7 +169,6 @@ def _dress(axis: Axes, least_span: float) -> None:
     from matplotlib.ticker import ScalarFormatter
 
     axis.set_xlabel("t (s)")
-    axis.label_outer()
     grid(axis)
     axis.margins(x=0)
     for ticks in (axis.xaxis.get_major_formatter(), axis.yaxis.get_major_formatter()):

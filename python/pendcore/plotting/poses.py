@@ -30,7 +30,7 @@ _WIDTH = 7.2
 
 
 def draw_strip(asked: Request) -> list[Artist]:
-    """Draw the chain at some times, s, row by row, each with the tip's path until then."""
+    """Draw the chain at some times, s, row by row, with the tip's path since the pose before."""
     dense = asked.solution.with_dense_output()
     scene, reach = dense.scene, _total_length(dense.scene)
     t, q, _, _ = curve_of(dense)
@@ -112,11 +112,15 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     pose, centers = scene.positions(t, q), scene.mass_centers(t, q)
     forces = forces_on_links(scene, t, q, qd)
     largest = max(float(np.hypot(*one.force)) for link in forces for one in link)
+    if not np.isfinite(largest):
+        raise ValueError(f"t = {t:g}: the forces are not finite there, and cannot be drawn")
     axis = asked.one_axes((min(3.3 * len(q) + 0.6, 16.0), 3.9))
     on = Sketch(axis, reach := _total_length(scene))
     right = 0.0
     for i, (angle, of_link) in enumerate(zip(q, forces, strict=True)):
-        arrows = [_arrow(on, one, pose[i : i + 2], largest) for one in of_link]
+        # Forces that are zero but for rounding have no arrow.
+        seen = [one for one in of_link if np.hypot(*one.force) > 1e-9 * largest]
+        arrows = [_arrow(on, one, pose[i : i + 2], largest) for one in seen]
         ends = [pose[i : i + 2], *(np.array([one.start, one.start + one.along]) for one in arrows)]
         across = np.concatenate(ends)[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])
@@ -125,8 +129,9 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
         for one in arrows:
             sketch.arrow(on, one.start + moved, one.along, one.text, one.color)
     axis.set_title(f"t = {t:.4g} s", loc="left")
+    before = len(axis.texts)
     sketch.finish(on)
-    return [*axis.texts]
+    return [*axis.texts[before:]]
 
 
 def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:
@@ -142,8 +147,7 @@ def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -
 def _arrow(on: Sketch, of: Force, ends: Floats, largest: float) -> _Arrow:
     """Return how a force is drawn; one that would lie on the link arrives from the other side."""
     size = float(np.hypot(*of.force))
-    length = max(_LONGEST * size / largest, _SHORTEST if size > 1e-9 * largest else 0.0)
-    along = length * on.size * of.force / (size or 1.0)
+    along = max(_LONGEST * size / largest, _SHORTEST) * on.size * of.force / size
     far = max(ends, key=lambda end: float(np.hypot(*(end - of.at))))
     link = (far - of.at) / (np.hypot(*(far - of.at)) or 1.0)
     if of.kind == "joint" and along @ link > 0.9 * np.hypot(*along):
@@ -178,9 +182,9 @@ def forces_on_links(scene: Scene, t: float, q: Floats, qd: Floats) -> list[list[
         if i + 1 < n:
             name = f"${force_name(i + 2, i + 1)}$"
             forces.append(Force("joint", name, pose[i + 1], -reactions[i + 1]))
-        if link.mass > 0:
+        if link.mass * scene.gravity:
             forces.append(Force("weight", f"$m_{{{i + 1}}} g$", centers[i], link.mass * gravity))
-        if i + 1 == n and payload > 0:
+        if i + 1 == n and payload * scene.gravity:
             forces.append(Force("weight", "$m_p g$", pose[n], payload * gravity))
         if np.hypot(*drags[i]) > 1e-6 * max(np.hypot(*one.force) for one in forces):
             forces.append(Force("other", f"$D_{{{i + 1}}}$", centers[i], drags[i]))

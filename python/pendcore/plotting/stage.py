@@ -31,6 +31,8 @@ LETTERS, CLOCK = 14.0, 22.0
 _LETTERING = {"font.size": LETTERS, "legend.handlelength": 0.7, "legend.columnspacing": 0.8}
 _LONGEST, _SHORTEST = 0.4, 0.14
 """The lengths of arrows as shares of the total length; the longest from this percentile on."""
+_ROOM = 0.18
+"""The way from the head of an arrow to its text, as a share of the total length."""
 _TAIL = 24
 """The trace fades in so many parts."""
 
@@ -107,7 +109,10 @@ class Stage:
         self.times = frame_times(solutions, choices.fps, choices.speed)
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
-        last_right = [_last_right_frame(one, self.times, choices.horizon) for one in solutions]
+        limit = choices.horizon
+        ends = [one.t_reached if limit is None else one.valid_until(limit) for one in solutions]
+        pairs = zip(solutions, ends, strict=True)
+        last_right = [_last_right_frame(one, self.times, end) for one, end in pairs]
         with applied(_LETTERING):
             self.figure = new_figure()
             kinds = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
@@ -120,12 +125,13 @@ class Stage:
             for k, (one, until) in enumerate(zip(moves, last_right, strict=True)):
                 axis, count = scenes[k % len(scenes)], one.places.shape[1] - 1
                 colors = _colors(theme_of(axis), k, count, is_alone=len(moves) == 1)
-                self._players.append(_Player(axis, one, colors, choices, until, arrows[k]))
-                self._players[-1].name(names[k])
+                self._players.append(
+                    _Player(axis, one, colors, choices, until, arrows[k], names[k])
+                )
             how: dict[str, Any] = {"transform": scenes[0].transAxes, "va": "top", "fontsize": CLOCK}
             self._clock = scenes[0].text(0.03, 0.97, "", **how)
-            if choices.horizon is not None:
-                _say_horizon(dense[0], choices.horizon, scenes[0], panels)
+            if limit is not None:
+                _say_horizon(solutions, choices, ends, scenes[0], panels)
         self._pace = "" if choices.speed == 1.0 else f"  (x{choices.speed:g})"
         for artist in self.moving():
             artist.set_animated(True)
@@ -156,6 +162,7 @@ class _Player:
         choices: Choices,
         last_right: int,
         arrows: Floats | None,
+        name: str,
     ) -> None:
         from matplotlib.collections import LineCollection
 
@@ -185,9 +192,6 @@ class _Player:
             )  # fmt: skip
             self._sizes = [self._text(color, ha="center", va="center") for _ in range(n)]
             self.artists += [self._arrows, *self._sizes]
-
-    def name(self, name: str) -> None:
-        """Write a name beside the tip."""
         if name:
             self._name = self._text(self._colors[-1], va="center")
             self._name.set_text(in_legend(name))
@@ -224,14 +228,14 @@ class _Player:
         newtons = np.hypot(*forces.T)
         self._arrows.set_offsets(places[:-1])
         self._arrows.set_UVC(*arrows.T)
-        room = 0.13 * self._moves.total_length
+        room = _ROOM * self._moves.total_length
         for joint, along, size, force in zip(places, arrows, self._sizes, newtons, strict=False):
             length = np.hypot(*along) or 1.0
             ahead, aside = room * along / length, room * along[::-1] / length * [1.0, -1.0]
-            sides = [1.4 * ahead, ahead + 1.4 * aside, ahead - 1.4 * aside]
+            sides = [ahead, 0.7 * ahead + aside, 0.7 * ahead - aside]
             spots = joint + along + np.array(sides)
             clear = [_distance(spot, places) for spot in spots]
-            best = 0 if clear[0] > room else int(np.argmax(clear))
+            best = 0 if clear[0] > 0.7 * room else int(np.argmax(clear))
             size.set_position(spots[best])
             size.set_text(f"{force:.3g} N" if np.any(along) else "")
 
@@ -313,12 +317,14 @@ def _layout(
 
 def _frame_scene(axis: Axes, moves: Sequence[Moves], arrows: Sequence[Floats]) -> None:
     """Fix the limits so that nothing ever leaves the picture, and draw pivots and a scale."""
+    reach = moves[0].total_length
     ends = [one.places[:, :-1] + along for one, along in zip(moves, arrows, strict=False)]
     places = np.concatenate([x.reshape(-1, 2) for x in (*(one.places for one in moves), *ends)])
     low, high = places.min(axis=0), places.max(axis=0)
-    reach = moves[0].total_length
-    margin = 0.12 * max(float((high - low).max()), 0.2 * reach)
-    axis.plot(*np.array([low - margin, high + margin]).T, alpha=0.0)
+    room = 2 * _ROOM * reach if len(arrows) else 0.0  # for the texts beyond the heads
+    margin = max(0.12 * max(float((high - low).max()), 0.2 * reach), room)
+    clock = [0.0, 0.12 * float((high - low).max())]
+    axis.plot(*np.array([low - margin - clock, high + margin]).T, alpha=0.0)
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.0)
     axis.invert_yaxis()
@@ -329,21 +335,21 @@ def _frame_scene(axis: Axes, moves: Sequence[Moves], arrows: Sequence[Floats]) -
     draw_scale(axis, np.array([low[0] - 0.7 * margin, high[1] + 0.7 * margin]), reach)
 
 
-def _say_horizon(run: Solution, limit: float, stage: Axes, panels: Sequence[Axes]) -> None:
-    """Write below the clock until when a run is right, and shade the curves after that."""
-    until = run.valid_until(limit)
-    Request(solution=run, horizon=limit, valid_until=until).shade(panels)
-    if until != run.t_reached:
-        said = f"right to {limit:g} rad until {until:.4g} s"
+def _say_horizon(runs: Sequence[Solution], choices: Choices, ends: Sequence[float],
+                 stage: Axes, panels: Sequence[Axes]) -> None:  # fmt: skip
+    """Write below the clock until when all runs are right, and shade the curves after that."""
+    first = min(range(len(runs)), key=lambda k: abs(ends[k] - runs[k].t_span[0]))
+    asked = Request(solution=runs[first], horizon=choices.horizon, valid_until=ends[first])
+    asked.shade(panels)
+    if ends[first] != runs[first].t_reached:
         color = theme_of(stage).quiet
-        stage.text(0.03, 0.87, said, transform=stage.transAxes, va="top", color=color)
+        how: dict[str, Any] = {"transform": stage.transAxes, "va": "top", "color": color}
+        stage.text(0.03, 0.87, asked.until(), **how)
 
 
-def _last_right_frame(solution: Solution, times: Floats, horizon: float | None) -> int:
-    if horizon is None:
+def _last_right_frame(solution: Solution, times: Floats, until: float) -> int:
+    """Return the last frame in which a run is right, if it is right until a time, s."""
+    if until == solution.t_reached:
         return len(times)
-    valid = solution.valid_until(horizon)
-    if valid == solution.t_reached:
-        return len(times)
-    past = (times - valid) * (1 if times[-1] >= times[0] else -1) > 0
+    past = (times - until) * (1 if times[-1] >= times[0] else -1) > 0
     return int(np.argmax(past)) - 1 if past.any() else len(times)

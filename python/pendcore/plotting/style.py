@@ -8,13 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Theme(NamedTuple):
+@dataclass(frozen=True)
+class Theme:
     """The colours on one ground.
 
     The six with names of colours can be told apart on ``ground``, also by eyes that lack one kind
@@ -50,30 +55,13 @@ class Theme(NamedTuple):
         """The colours of one run after another where a run has one colour."""
         return self.ink, self.ochre, self.teal, self.purple, self.green, self.red
 
-    @property
-    def force(self) -> str:
-        """The colour of forces at joints."""
-        return self.purple
-
-    @property
-    def weight(self) -> str:
-        """The colour of weights."""
-        return self.quiet
-
-    @property
-    def couple(self) -> str:
-        """The colour of couples."""
-        return self.teal
-
-    @property
-    def angle(self) -> str:
-        """The colour of angles that are measured in a drawing."""
-        return self.blue
-
-    @property
-    def load(self) -> str:
-        """The colour of the other forces on a link, such as drag."""
-        return self.red
+    # What drawings of mechanisms are coloured by: forces at joints, weights, couples, angles that
+    # are measured, and other loads, such as drag.
+    force = property(attrgetter("purple"))
+    weight = property(attrgetter("quiet"))
+    couple = property(attrgetter("teal"))
+    angle = property(attrgetter("blue"))
+    load = property(attrgetter("red"))
 
 
 LIGHT = Theme(
@@ -89,10 +77,8 @@ DARK = Theme(
 
 DASHES = ("-", "--", "-.", ":")
 """For one solution after another on the same axes."""
-SIZES = {"small": 0.85, "text": 1.0, "title": 1.15, "headline": 1.5}
+SIZES = {"small": 0.85, "title": 1.15}
 """The sizes of letters, in those of the text."""
-POINTS = 10.0
-"""The size of the text in figures."""
 
 
 def sheet(theme: Theme = LIGHT) -> dict[str, Any]:
@@ -108,7 +94,7 @@ def sheet(theme: Theme = LIGHT) -> dict[str, Any]:
         "axes.labelcolor": theme.ink,
         "axes.edgecolor": theme.quiet,
         "axes.prop_cycle": cycler(color=theme.links),
-        "font.size": POINTS,
+        "font.size": 10.0,
         "axes.titlesize": "medium",
         "axes.titlelocation": "left",
         "legend.fontsize": "small",
@@ -132,13 +118,15 @@ def sheet(theme: Theme = LIGHT) -> dict[str, Any]:
 def applied(others: Mapping[str, Any] | None = None) -> Iterator[None]:
     """Make figures in the house's style, with some settings changed.
 
-    What the user has set in matplotlib otherwise stays.
+    What the user has set in matplotlib otherwise stays; where that is a dark ground, so is ours.
     """
     import matplotlib as mpl
+    from matplotlib.colors import to_rgb
 
     set_now: Any = mpl.rcParams  # matplotlib's types want each name as a literal
     usual: Any = mpl.rcParamsDefault
-    asked: Any = {**sheet(), **(others or {})}
+    is_dark = sum(to_rgb(set_now["axes.facecolor"])) < 1.5
+    asked: Any = {**sheet(DARK if is_dark else LIGHT), **(others or {})}
     with mpl.rc_context({name: x for name, x in asked.items() if set_now[name] == usual[name]}):
         yield
 
@@ -159,9 +147,12 @@ def keep_style(axes: Axes) -> None:
 
 def theme_of(axes: Axes) -> Theme:
     """Return the colours that can be seen on the ground of these axes."""
-    from matplotlib.colors import to_rgb
+    from matplotlib.colors import to_rgb, to_rgba
 
-    return LIGHT if sum(to_rgb(axes.get_facecolor())) > 1.5 else DARK
+    figure: Any = axes.get_figure(root=True)
+    *own, alpha = to_rgba(axes.get_facecolor())
+    shown = alpha * np.array(own) + (1 - alpha) * np.array(to_rgb(figure.get_facecolor()))
+    return LIGHT if shown.sum() > 1.5 else DARK
 
 
 def css_variables(dark: Theme | None = DARK, when_dark: str | None = None) -> str:
@@ -187,7 +178,7 @@ def _rule(selector: str, lines: list[str]) -> str:
 def _variables(theme: Theme) -> list[str]:
     links = {f"link-{k}": color for k, color in enumerate(theme.links, 1)}
     parts = {f"part-{k}": color for k, color in enumerate(theme.parts, 1)}
-    named = theme._asdict() | links | parts | {"force": theme.force}
+    named = vars(theme) | links | parts | {"force": theme.force}
     return [f"  --{name}: {color};" for name, color in named.items()]
 
 

@@ -18,7 +18,7 @@ from pendcore.cli.map.refinement import Mask, levels_of, refined
 from pendcore.cli.map.table import MapAxis, MapTable, read_map_table
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.messages import Floats
-from pendcore.plotting import Axis, Shown, draw_map, is_wide, new_axes
+from pendcore.plotting import MAP_SIZE, Axis, Shown, draw_map, is_wide, new_axes
 from pendcore.reducers import REDUCERS, FirstEvent, Reducer
 
 HELP = "draw a number over a plane of starts or parameters, and which pixels are resolved"
@@ -267,7 +267,7 @@ def _save_figure(
     is_log = bool(reducer and reducer.is_log_if_wide) and is_wide(pixels.values)
     label = f"{table.show.replace('_', ' ')} ({unit})"
     shown = Shown(label, pixels.values, _blanks(case, table, reducer, pixels.values), is_log)
-    (axes,) = new_axes((6.4, 5.2), new_figure=Figure)
+    (axes,) = new_axes(MAP_SIZE, new_figure=Figure)
     mask = None if args.no_trust else pixels.resolved
     draw_map(axes, _axis(table.x), _axis(table.y), shown, mask, {})
     figure: Any = axes.figure
