@@ -137,10 +137,10 @@ def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
     ]
     momentum[1] = momentum[1] + 0.4 * np.tensordot(change, tip, 1) / h**2
     forces = forces_on_links(scene, at, q[1], qd[1])
-    assert [one.kind for one in forces[1]] == ["joint", "weight", "weight", "other"]
+    assert [one.kind for one in forces[1]] == ["force", "weight", "weight", "load"]
     for own, of_link in zip(momentum, forces, strict=True):
         assert sum(one.force for one in of_link) == pytest.approx(own, rel=1e-4, abs=1e-4)
-    (drag,) = (one.force for one in forces[1] if one.kind == "other")
+    (drag,) = (one.force for one in forces[1] if one.kind == "load")
     speed = np.gradient(centers[:, 1], h, axis=0)[1]
     assert drag @ speed < 0  # drag brakes
 
@@ -150,8 +150,8 @@ def test_a_fast_pivot_is_no_force_on_a_link():
     scene = BOOK.replace(effects=[shaken, DRAG])
     state = 1e-3, np.array([0.3, 0.9]), np.array([2.0, -5.0])
     first, second = forces_on_links(scene, *state)
-    assert [one.kind for one in first] == ["joint", "joint", "weight"]
-    assert [one.kind for one in second] == ["joint", "weight", "other"]
+    assert [one.kind for one in first] == ["force", "force", "weight"]
+    assert [one.kind for one in second] == ["force", "weight", "load"]
     slow_drag = forces_on_links(scene.replace(effects=[DRAG]), *state)[1][-1].force
     # The pivot's speed is part of the wind that the rod feels, so that the drags are of one size.
     assert 0.1 < np.hypot(*second[-1].force) / np.hypot(*slow_drag) < 1e3

@@ -90,15 +90,6 @@ def round_length(most: float) -> float:
     return float(f"{max(k for k in (1, 2, 5) if k * power <= most * (1 + 1e-12)) * power:.1g}")
 
 
-class _Arrow(NamedTuple):
-    """A force as it is drawn: from where to where, m, its name, and its colour."""
-
-    start: Floats
-    along: Floats
-    text: str
-    color: str
-
-
 def draw_free_bodies(asked: Request) -> list[Artist]:
     """Draw each link by itself with the forces on it, N, at a time, s.
 
@@ -121,13 +112,16 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
         # Forces that are zero but for rounding have no arrow.
         seen = [one for one in of_link if np.hypot(*one.force) > 1e-9 * largest]
         arrows = [_arrow(on, one, pose[i : i + 2], largest) for one in seen]
-        ends = [pose[i : i + 2], *(np.array([one.start, one.start + one.along]) for one in arrows)]
-        across = np.concatenate(ends)[:, 0]
+        pairs = [*zip(seen, arrows, strict=True)]
+        free = [one.at + (-along if arrives else along) for one, (along, arrives) in pairs]
+        across = np.array([*pose[i : i + 2], *free])[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])
         right += np.ptp(across) + 0.5 * reach
         _draw_body(on, i, angle, pose[i : i + 2] + moved, centers[i] + moved)
-        for one in arrows:
-            sketch.arrow(on, one.start + moved, one.along, one.text, one.color)
+        for one, (along, arrives) in pairs:
+            text = f"{one.name} = {np.hypot(*one.force):.3g} N"
+            color = getattr(on.theme, one.kind)
+            sketch.arrow(on, one.at + moved, along, text, color, arriving=arrives)
     axis.set_title(f"t = {t:.4g} s", loc="left")
     before = len(axis.texts)
     sketch.finish(on)
@@ -144,20 +138,17 @@ def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -
     sketch.number(on, parts, i + 1, direction(angle - np.pi / 2))
 
 
-def _arrow(on: Sketch, of: Force, ends: Floats, largest: float) -> _Arrow:
-    """Return how a force is drawn; one that would lie on the link arrives from the other side."""
+def _arrow(on: Sketch, of: Force, ends: Floats, largest: float) -> tuple[Floats, bool]:
+    """Return the arrow of a force, m, and whether it arrives: else it would lie on the link."""
     size = float(np.hypot(*of.force))
     along = max(_LONGEST * size / largest, _SHORTEST) * on.size * of.force / size
-    far = max(ends, key=lambda end: float(np.hypot(*(end - of.at))))
-    link = (far - of.at) / (np.hypot(*(far - of.at)) or 1.0)
-    if of.kind == "joint" and along @ link > 0.9 * np.hypot(*along):
-        return _Arrow(of.at - along, along, f"{of.name} = {size:.3g} N", on.theme.force)
-    kinds = {"joint": on.theme.force, "weight": on.theme.weight, "other": on.theme.load}
-    return _Arrow(of.at, along, f"{of.name} = {size:.3g} N", kinds[of.kind])
+    far = max(ends, key=lambda end: float(np.hypot(*(end - of.at)))) - of.at
+    arrives = of.kind == "force" and along @ far > 0.9 * np.hypot(*along) * np.hypot(*far)
+    return along, bool(arrives)
 
 
 class Force(NamedTuple):
-    """A force on a link: "joint", "weight" or "other", its name, its point, m, and itself, N."""
+    """A force on a link, N: its kind as in `Theme` (force, weight, load), name, and point, m."""
 
     kind: str
     name: str
@@ -178,16 +169,16 @@ def forces_on_links(scene: Scene, t: float, q: Floats, qd: Floats) -> list[list[
     gravity = np.array([0.0, scene.gravity])
     found = []
     for i, link in enumerate(scene.links):
-        forces = [Force("joint", f"${force_name(i, i + 1)}$", pose[i], reactions[i])]
+        forces = [Force("force", f"${force_name(i, i + 1)}$", pose[i], reactions[i])]
         if i + 1 < n:
             name = f"${force_name(i + 2, i + 1)}$"
-            forces.append(Force("joint", name, pose[i + 1], -reactions[i + 1]))
+            forces.append(Force("force", name, pose[i + 1], -reactions[i + 1]))
         if link.mass * scene.gravity:
             forces.append(Force("weight", f"$m_{{{i + 1}}} g$", centers[i], link.mass * gravity))
         if i + 1 == n and payload * scene.gravity:
             forces.append(Force("weight", "$m_p g$", pose[n], payload * gravity))
         if np.hypot(*drags[i]) > 1e-6 * max(np.hypot(*one.force) for one in forces):
-            forces.append(Force("other", f"$D_{{{i + 1}}}$", centers[i], drags[i]))
+            forces.append(Force("load", f"$D_{{{i + 1}}}$", centers[i], drags[i]))
         found.append(forces)
     return found
 
