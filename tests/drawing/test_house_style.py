@@ -51,8 +51,11 @@ def contrast(one, other):
 
 
 @pytest.fixture(autouse=True)
-def no_figure_left_over():
-    yield
+def usual_settings():
+    """Begin with matplotlib's own settings: what other tests draw with may have set a style."""
+    with plt.rc_context():
+        plt.rcdefaults()
+        yield
     plt.close("all")
 
 

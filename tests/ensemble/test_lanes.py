@@ -40,8 +40,8 @@ def test_which_methods_have_lanes_is_told():
         assert long_chain(n).explain().lanes == (("taylor",) if n == 100 and has_lanes() else ())
     if has_lanes():
         book, five = (" ".join(str(one.explain()).split()) for one in (BOOK, chain(5)))
-        assert "a lane each, by dopri5, dop853 or taylor; it runs them one by one with ev" in book
-        assert "and for the energy drift if effects do work or lose energy" in book
+        assert "a lane each, by dopri5, dop853 or taylor; one by one with ev" in book
+        assert "and for the drift of energy with losses" in book
         assert "a lane each, by taylor; it runs them one by one" in five
 
 

@@ -343,36 +343,17 @@ class Page {
   }
 
   draw() {
-    const { run, t } = this;
-    const state = run.state(t);
-    const places = run.places(t, state);
-    const shown = {
-      places,
-      t,
-      lengths: run.lengths,
-      isLost: !this.#isRight(t),
-      pivot: [places[0], places[1]],
-      forces: byId("reactions").checked ? run.reactions(t, state) : null,
-      path: byId("trace").checked ? this.#path(t) : null,
-      ghost: this.ghost ? this.ghost.places(this.ghost.within(t), this.ghost.state(t)) : null,
+    const { run, t, ghost, other } = this;
+    this.view.draw({
+      ...this.#shown(run, t),
+      ghost: ghost && ghost.places(ghost.within(t), ghost.state(t)),
       neighbours: byId("neighbours").checked ? this.neighbours : null,
-    };
-    this.view.draw(shown);
-    if (this.other) {
-      const { other } = this;
-      const [at, view] = [other.within(t), this.otherView];
-      const otherState = other.state(at);
-      Object.assign(view, { zoom: this.view.zoom, shift: this.view.shift });
-      view.draw({
-        ...shown,
-        places: other.places(at, otherState),
-        lengths: other.lengths,
-        forces: shown.forces && other.reactions(at, otherState),
-        path: shown.path && this.#path(at, other),
-        ghost: null,
-        neighbours: null,
-      });
+    });
+    if (other) {
+      Object.assign(this.otherView, { zoom: this.view.zoom, shift: this.view.shift });
+      this.otherView.draw(this.#shown(other, other.within(t)));
     }
+    const state = run.state(t);
     if (!this.isRefused) this.trust();
     const past = this.#isRight(run.end) ? null : this.validUntil;
     this.curves.draw(t, state, past);
@@ -385,7 +366,22 @@ class Page {
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
 
-  #path(t, run = this.run) {
+  /** What the picture of a run shows at a time; it is pale where this page's run is not right. */
+  #shown(run, t) {
+    const state = run.state(t);
+    const places = run.places(t, state);
+    return {
+      places,
+      t,
+      lengths: run.lengths,
+      isLost: !this.#isRight(t),
+      pivot: [places[0], places[1]],
+      forces: byId("reactions").checked ? run.reactions(t, state) : null,
+      path: byId("trace").checked ? this.#path(t, run) : null,
+    };
+  }
+
+  #path(t, run) {
     const since = run.within(t - run.direction * TRACE);
     const times = grid(since, t, this.traceParts);
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
