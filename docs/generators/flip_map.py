@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from page_part import rewrite
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cost.measurement import processor
-from pendcore.plotting import LIGHT, legend_above, new_axes
+from pendcore.plotting import Axis, Shown, draw_map, new_axes
 from scipy.interpolate import CubicHermiteSpline
 
 ROOT = Path(__file__).parents[2]
@@ -172,29 +172,15 @@ def unresolved(found: dict[str, Any], times: Floats) -> list[float]:
 def draw(found: dict[str, Any], path: Path) -> None:
     """Draw when a link first turns over, what is not resolved, and what has no value."""
     mpl.use("Agg")
-    from matplotlib.patches import Patch
-
-    (axes,) = new_axes((8.6, 7.0))
-    sheet: Any = axes.figure
-    how: dict[str, Any] = {"origin": "lower", "extent": [-180, 180] * 2, "interpolation": "none"}
-    shown = np.ma.masked_invalid(found["flip"] / UNIT)
-    image = axes.imshow(shown.T, norm="log", cmap="viridis", **how)
-    sheet.colorbar(image, ax=axes, label="first turn over, in sqrt(l/g)")
     never = ~np.isfinite(found["flip"]) & ~found["forbidden"]
-    kinds = (
-        ("energy forbids it", found["forbidden"], LIGHT.line),
-        ("did not turn over", never, LIGHT.ground),
-        ("not resolved", ~found["resolved"], LIGHT.red),
-    )
-    for _, mask, color in kinds:
-        pixels = np.ma.masked_where(~mask.T, np.ones(mask.T.shape))
-        axes.imshow(pixels, cmap=mpl.colors.ListedColormap([color]), **how)
-    legend_above(axes, [
-        Patch(facecolor=color, edgecolor=LIGHT.quiet, label=f"{name}: {mask.mean():.1%}")
-        for name, mask, color in kinds
-    ])  # fmt: skip
-    axes.set(xlabel="angle of link 1 from hanging (deg)", xticks=range(-180, 181, 60))
-    axes.set(ylabel="angle of link 2 from hanging (deg)", yticks=range(-180, 181, 60))
+    blanks = {"did not turn over": never, "energy forbids it": found["forbidden"]}
+    shown = Shown("first turn over, in sqrt(l/g)", found["flip"] / UNIT, blanks, is_log=True)
+    degrees = np.linspace(-180, 180, len(found["flip"]))
+    across, up = (Axis(f"angle of link {i} from hanging (deg)", degrees) for i in (1, 2))
+    (axes,) = new_axes((8.6, 7.0))
+    draw_map(axes, across, up, shown, found["resolved"], {})
+    axes.set(xticks=range(-180, 181, 60), yticks=range(-180, 181, 60))
+    sheet: Any = axes.figure
     sheet.savefig(path, dpi=110)
 
 

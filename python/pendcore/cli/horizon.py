@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pendcore import ErrorEstimate, Solution
+from pendcore.explanation.solution_text import LIMIT
 
-LIMIT = 0.1
-"""rad; a run counts as right until the error of an angle passes it."""
 MOST_WORK, PATIENCE = 1_000_000, 10.0
 """The most right-hand sides of a run whose horizon is estimated unasked, and the time limit, s."""
 

@@ -9,8 +9,9 @@ from typing import Any
 
 from pendcore import Solution
 from pendcore.cli.arguments import add_case_or_solution, solution_of
-from pendcore.cli.horizon import LIMIT, horizon_of
+from pendcore.cli.horizon import horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage
+from pendcore.explanation.solution_text import LIMIT
 from pendcore.messages import as_json
 
 HELP = "say until when a run is right"

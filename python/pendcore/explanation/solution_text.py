@@ -8,7 +8,7 @@ from pendcore import Solution
 from pendcore.messages import listed
 from pendcore.methods import evaluations
 
-_LIMIT = 0.1
+LIMIT = 0.1
 """rad: a run is right until its error passes this, unless another limit is asked for."""
 _MANY = 4000
 """With more times than this, a repr computes the energy at some of them only."""
@@ -51,8 +51,8 @@ def _right(solution: Solution) -> str:
     known = solution.known_error
     if known is None:
         return "not estimated yet: sol.valid_until() does, by a second run"
-    until, end = known.valid_until(_LIMIT), solution.t_reached
-    return f"to {_LIMIT:g} rad {'to the end' if until == end else f'until {until:.4g} s'}"
+    until, end = known.valid_until(LIMIT), solution.t_reached
+    return f"to {LIMIT:g} rad {'to the end' if until == end else f'until {until:.4g} s'}"
 
 
 def _scene(solution: Solution) -> str:

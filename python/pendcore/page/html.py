@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from pendcore import Case, Solution, build, effects, simulate
+from pendcore.explanation.solution_text import LIMIT
 from pendcore.messages import silence, text
 from pendcore.methods import known_methods
 from pendcore.options import OPTIONS
@@ -35,8 +36,6 @@ WITHOUT_CORE = (
     "(make page in a clone builds it; wheels have it)."
 )
 OWN_FUNCTIONS = "This page plays back what Python computed: functions of one's own stay in Python."
-LIMIT = 0.1
-"""rad: a run can be trusted until its error passes this."""
 _PATIENCE = 10.0
 """s, for second runs of a page that cannot make them itself."""
 _FRAME_RATE, _FRAME_TURN, _MOST_FRAMES = 60, 0.1, 3600

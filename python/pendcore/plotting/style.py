@@ -155,20 +155,17 @@ def theme_of(axes: Axes) -> Theme:
     return LIGHT if shown.sum() > 1.5 else DARK
 
 
-def css_variables(dark: Theme | None = DARK, when_dark: str | None = None) -> str:
-    """Return the style as variables of CSS; without a dark theme it stays light for every reader.
+BY_SYSTEM = "@media (prefers-color-scheme: dark)"
+"""When a page is dark that follows its reader's system."""
 
-    With one, it follows the reader's system, or the selector ``when_dark`` of a page that lets its
-    reader choose.
-    """
+
+def css_variables(when_dark: str = BY_SYSTEM) -> str:
+    """Return the style as variables of CSS, dark where a selector says so; "" is always light."""
     sizes = [f"  --size-{name}: {size}rem;" for name, size in SIZES.items()]
-    light = [*sizes, *_variables(LIGHT)]
-    if dark is None:
-        return _rule(":root", ["  color-scheme: light;", *light])
-    if when_dark is not None:
-        return _rule(":root", light) + _rule(when_dark, _variables(dark))
-    by_system = f"@media (prefers-color-scheme: dark) {{\n{_rule(':root', _variables(dark))}}}\n"
-    return _rule(":root", ["  color-scheme: light dark;", *light]) + by_system
+    told = _rule(":root", [*sizes, *_variables(LIGHT)])
+    if when_dark == BY_SYSTEM:
+        return f"{told}{BY_SYSTEM} {{\n{_rule(':root', _variables(DARK))}}}\n"
+    return told + _rule(when_dark, _variables(DARK)) if when_dark else told
 
 
 def _rule(selector: str, lines: list[str]) -> str:

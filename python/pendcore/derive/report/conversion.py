@@ -72,7 +72,7 @@ def markdown(document: Document, path: Path) -> None:
 
 def page(document: Document, path: Path) -> None:
     """Write a document as one page of HTML; raise a RuntimeError if pandoc fails."""
-    style = f"<style>\n{css_variables(dark=None)}{STYLE.read_text('utf-8')}</style>\n"
+    style = f"<style>\n{css_variables(when_dark='')}{STYLE.read_text('utf-8')}</style>\n"
     with TemporaryDirectory() as place:
         made = _pandoc(document, Reader.HTML, Path(place), style, "--to=html5", "--mathml")
         text = made.read_text("utf-8")
