@@ -6,7 +6,8 @@ import numpy as np
 import pendcore as pc
 import pytest
 from matplotlib.figure import Figure
-from pendcore.plotting import KINDS, save_figure
+from pendcore.plotting import KINDS, LIGHT, save_figure
+from pendcore.plotting.plot import plot
 from pendcore.plotting.poses import forces_on_links
 from runs_that_kept_little import axes
 
@@ -18,6 +19,10 @@ DRAG = pc.effects.RodDrag(link=2, drag_coefficient=1.2, diameter=0.05)
 def sol():
     down = pc.events.LinkAngle(1, np.pi / 2)
     return pc.simulate(BOOK, (0, 5), [0.8, 1.0], events=[down], ledger=True)
+
+
+def legend(axis):
+    return [text.get_text() for text in axis.get_legend().get_texts()]
 
 
 def test_rates_are_those_of_the_run_in_rad_per_second(sol):
@@ -32,7 +37,7 @@ def test_rates_are_those_of_the_run_in_rad_per_second(sol):
 def test_reactions_have_components_and_sizes_in_newtons(sol):
     lines = sol.plot("reactions", axes(2))
     names = [text.get_text() for text in lines[0].axes.get_legend().get_texts()]
-    assert names == ["x", "y, downwards", "size"]
+    assert names == ["x", "y, downwards", "$|F|$"]
     x, y, size = (line.get_ydata() for line in lines[:3])
     assert (x[0], y[0]) == pytest.approx(tuple(sol.reactions()[0, 0]))
     assert size == pytest.approx(np.hypot(x, y))
@@ -43,7 +48,17 @@ def test_the_energy_has_its_ledger_below(sol):
     damped = BOOK.replace(effects=[pc.effects.ViscousJoint(joint=1, damping=0.5)])
     run = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True)
     lines = run.plot("energy", axes(3))
-    assert lines[-1].axes.get_ylabel() == "residual (J)"
+    assert lines[-1].axes.get_ylabel() == "residual (nJ)"
+    drawn = lines[-1].axes
+    drawn.figure.canvas.draw()
+    ticks = [
+        float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in drawn.get_yticklabels()
+    ]
+    assert ticks == pytest.approx(1e9 * drawn.get_yticks())
+    assert not drawn.yaxis.get_offset_text().get_visible()
+    rough = pc.simulate(damped, q0=0.5, t_span=(0, 5), ledger=True, method="rk4", step=0.05)
+    rough.plot("energy", [line.axes for line in (lines[0], lines[3], lines[4])])
+    assert drawn.get_ylabel() == "residual (\N{MICRO SIGN}J)"
     found = {line.get_label().lstrip("_"): line.get_data() for line in lines}
     assert set(found) == {"kinetic", "potential", "total", "viscous (lost)", "residual"}
     t, total = found["total"]
@@ -57,7 +72,9 @@ def test_the_energy_has_its_ledger_below(sol):
 def test_a_ledger_with_nothing_booked_has_its_residual_alone():
     run = pc.simulate(BOOK, (0, 2), 0.5, ledger=True)
     lines = run.plot("energy", axes(2))
-    assert [line.axes.get_ylabel() for line in lines[2:]] == ["energy (J)", "residual (J)"]
+    assert [line.axes.get_ylabel() for line in lines[2:]] == ["energy (J)", "residual (pJ)"]
+    (alone,) = {line.axes for line in run.plot("energy", axes(1))}
+    assert alone.get_ylabel() == "energy (J)"
 
 
 def test_given_axes_keep_their_labels_and_ticks(sol):
@@ -83,8 +100,11 @@ def test_the_path_is_that_of_the_tip_and_y_points_down(sol):
     assert (x[-1], y[-1]) == pytest.approx(tuple(sol.positions()[-1, -1]), abs=1e-12)
     assert line.axes.yaxis_inverted()  # after the second path too
     assert line.axes.get_aspect() == 1.0
-    assert line.get_color() != other.get_color()
     assert line.axes.get_ylabel() == "y (m), downwards"
+    poses = [one for one in ax[0].lines if one.get_marker() == "o"]
+    assert [one.get_color() for one in poses[::2]] == [LIGHT.lost] * 2
+    assert [one.get_color() for one in poses[1::2]] == [line.get_color(), other.get_color()]
+    assert (line.get_color(), other.get_color()) == (LIGHT.link(1), LIGHT.run(1))
 
 
 def test_the_phase_portrait_has_a_curve_for_each_link(sol):
@@ -93,6 +113,9 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol):
     assert lines[1].get_xdata()[0] == sol.q[0, 1]
     assert lines[1].get_ydata()[-1] == sol.qd[-1, 1]
     assert lines[0].axes.get_xlabel() == "$q$ (rad)"
+    apart = sol.plot("phase", axes(2), label="mine")
+    assert [line.axes.get_xlabel() for line in apart] == ["$q_{1}$ (rad)", "$q_{2}$ (rad)"]
+    assert [legend(line.axes) for line in apart] == [["mine"], ["mine"]]
 
 
 def test_a_section_shows_the_states_at_an_event(sol):
@@ -100,6 +123,7 @@ def test_a_section_shows_the_states_at_an_event(sol):
     assert len(line.get_xdata()) == len(sol.events[0]) > 2
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
+    assert legend(line.axes) == ["a point at each\nLinkAngle(link=1, value=1.571)"]
 
 
 def test_a_section_without_events_says_how_to_look_for_them():
@@ -117,6 +141,13 @@ def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
     pose = np.array([*first, second[1]])
     true = pc.simulate(sol.scene, q0=[0.8, 1.0], t_span=(0, 5), t_eval=[1.5]).positions()[0]
     assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
+
+
+def test_a_strip_fills_the_width_of_its_figure(sol):
+    for t in (None, [0.0, 1.5, 4.0]):
+        axis = plot(sol, "strip", None, None, {"t": t}, {}, new_figure=Figure)[0].axes
+        axis.figure.draw_without_rendering()
+        assert axis.get_tightbbox().width > 0.9 * axis.figure.bbox.width
 
 
 def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
@@ -179,7 +210,7 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
             assert shade.get_x() == pytest.approx(until)
             assert shade.get_x() + shade.get_width() == pytest.approx(30)
         said = [text.get_text() for text in ax[0].get_legend().get_texts()]
-        assert said[-1] == f"not right to 0.1 rad after {until:.4g} s"
+        assert f"not right to 0.1 rad after {until:.4g} s" in said
     for what in ("path", "phase"):
         line = chaotic.plot(what, axes(), horizon=0.1)[0]
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())
@@ -195,7 +226,7 @@ REFUSED = [
     ({"what": "angle"}, r"what = 'angle': did you mean 'angles'\?"),
     ({"what": "angles", "t": 1.0}, "t: belongs to what = 'strip' and 'free_bodies'"),
     ({"what": "path", "link": 2}, "link: belongs to what = 'section'"),
-    ({"what": "strip", "horizon": 0.1}, "horizon: what = 'strip' shows no times"),
+    ({"what": "strip", "horizon": 0.1}, "horizon: belongs to what = 'angles' and"),
     ({"what": "section", "link": 3}, "link = 3: must be 1 to 2"),
     ({"what": "section", "link": 0}, "link = 0: must be 1 to 2"),
     ({"what": "strip", "label": "mine"}, "label: belongs to what = 'angles' and"),

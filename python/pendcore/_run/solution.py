@@ -693,7 +693,7 @@ class Solution:
         =================  ========================================================================
         ``"angles"``       the absolute angle of each link, deg, over time
         ``"rates"``        the rate of each link, rad/s, over time
-        ``"reactions"``    the force on each link at its joint, N, over time: x, y (downwards), size
+        ``"reactions"``    the force on each link at its joint, N, over time: x, y (downwards), |F|
         ``"energy"``       kinetic, potential and total energy, J, over time; with ``ledger=True``
                            the work and loss of every effect
         ``"path"``         the path of the tip in the plane, with the chain at the start and the end
@@ -711,8 +711,9 @@ class Solution:
         what : str
             The figure.
         ax : Axes or array of Axes, optional
-            One axes; for angles and rates also one for each link, for reactions one for each joint,
-            for energy three with a ledger. Default: a new figure of pyplot's, which is not shown.
+            One axes; for angles, rates and phase also one for each link, for reactions one for each
+            joint, for energy as many as it has panels. Default: a new figure of pyplot's, which is
+            not shown.
             Where curves are drawn already, the next ones are dashed.
         label : str, optional
             Name of this solution in the legend.
@@ -822,9 +823,8 @@ class Solution:
             s of the run that the trace of the tip shows; None draws none.
         reactions : bool
             Whether arrows show the force on each link at its joint, and, of a single run, curves
-            show their sizes, N.
-            Arrows are as long as forces are large, within limits: the shortest can be seen, and
-            the largest twentieth of the forces are as long as each other.
+            show their magnitudes, N. Arrows are as long as forces are large, within limits: the
+            shortest can be seen, and the largest twentieth of the forces are as long as each other.
         energy : bool
             Whether the energies of this run are shown over time, in place of the angles.
         horizon : float, optional

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
 from pendcore.cost.runs import line_style
-from pendcore.plotting import as_drawn, grid, new_axes, theme_of
+from pendcore.plotting import as_drawn, grid, one_axes, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,33 +28,28 @@ def plot(
     **line_properties: Any,
 ) -> list[Line2D]:
     """Draw points and their Pareto front, ``best``; see `AccuracyCost.plot`."""
-    from matplotlib.axes import Axes
-
     if y not in ("time", "nfev"):
         raise ValueError(f'y = {y!r}: must be "time" or "nfev"')
-    if ax is None:
-        (ax,) = new_axes((7.6, 4.6))
-    if not isinstance(ax, Axes):
-        raise TypeError(f"ax = {ax!r}: must be matplotlib Axes")
-    theme = theme_of(ax)
+    axis = one_axes(ax, (7.6, 4.6))
+    theme = theme_of(axis)
     drawn = [p for p in points if not p.failure and p.error > 0]
-    factor, unit = _unit(drawn) if y == "time" else (1.0, "")
+    factor, unit = _unit(drawn)
     lines = []
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
         usual = {"markerfacecolor": theme.ground, "markersize": 5, "label": method}
         given = {**usual, **line_style(method, theme), **line_properties}
         height = [factor * p.seconds if y == "time" else p.nfev for p in ours]
-        (line,) = ax.plot([p.error for p in ours], height, **given)
+        (line,) = axis.plot([p.error for p in ours], height, **given)
         lines.append(line)
         on_front = [(p.error, h) for p, h in zip(ours, height, strict=True) if p in best]
         if on_front and y == "time":
-            ax.plot(
+            axis.plot(
                 *zip(*on_front, strict=True), linestyle="", marker=line.get_marker(),
                 color=line.get_color(), markersize=line.get_markersize() + 1.5, zorder=3,
             )  # fmt: skip
-    _dress(ax, points, uncertainty, y, unit)
-    ax.set_title(as_drawn(title), fontsize=11)
+    _dress(axis, points, uncertainty, y, unit)
+    axis.set_title(as_drawn(title), fontsize=11)
     return lines
 
 
@@ -64,6 +59,7 @@ def _unit(points: list[Point]) -> tuple[float, str]:
 
 
 def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: str) -> None:
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
 
@@ -91,8 +87,6 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
     handles, _ = ax.get_legend_handles_labels()
     unknown = Patch(color=theme.line, label="the reference is\nuncertain by this")
     if y == "time":
-        from matplotlib.lines import Line2D
-
         filled = "filled: no other is\nboth better and faster"
         handles.append(Line2D([], [], ls="", marker="o", color=theme.ink, label=filled))
     handles += [unknown] * is_known

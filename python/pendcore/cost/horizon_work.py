@@ -133,36 +133,28 @@ class HorizonWork:
         else:
             by_digits, by_cost = figure.subplots(1, 2, sharey=True)
         theme = theme_of(by_digits)
+        hollow: dict[str, Any] = {"linestyle": "", "markerfacecolor": theme.ground, "zorder": 3}
         for method in self.methods:
-            points = self.of(method)
-            valid = [point.valid for point in points]
-            properties = {**line_style(method, theme), "markersize": 5}
-            by_digits.plot([point.early for point in points], valid, label=method, **properties)
-            by_cost.plot([1e6 * point.seconds for point in points], valid, **properties)
-            to_the_end = [point for point in points if self.is_to_the_end(point)]
-            hollow = {**properties, "linestyle": "", "markerfacecolor": theme.ground, "zorder": 3}
-            valid = [point.valid for point in to_the_end]
-            if to_the_end:
-                by_digits.plot([point.early for point in to_the_end], valid, **hollow)
-                by_cost.plot([1e6 * point.seconds for point in to_the_end], valid, **hollow)
+            how = {**line_style(method, theme), "markersize": 5}
+            _draw(by_digits, by_cost, self.of(method), {"label": method, **how})
+            if to_the_end := [point for point in self.of(method) if self.is_to_the_end(point)]:
+                _draw(by_digits, by_cost, to_the_end, {**how, **hollow})
         if self.growth is not None:
             _as_neighbours_part(by_digits, self)
-        columns = len(self.methods) + 1
         if any(self.is_to_the_end(point) for point in self.points):
-            columns += 1
-            hollow = {"color": theme.ink, "markerfacecolor": theme.ground, "linestyle": ""}
-            by_digits.plot([], [], marker="o", label="hollow: to the end", **hollow)
-        by_digits.set_xscale("log")
+            hollow |= {"color": theme.ink, "marker": "o", "label": "hollow: to the end"}
+            by_digits.plot([], [], **hollow)
         by_digits.invert_xaxis()
         by_digits.set_xlabel(f"error of the angles in the first {self.early:.2g} s (rad)")
         by_digits.set_ylabel(f"time until an angle is off by {self.limit:g} rad (s)")
-        by_cost.set_xscale("log")
         by_cost.set_xlabel("computing time for these seconds (\N{MICRO SIGN}s)")
         for axis in (by_digits, by_cost):
-            grid(axis)
+            axis.set_xscale("log")
             axis.set_ylim(bottom=0)
+            grid(axis)
             _few_ticks(axis)
-        figure.legend(loc="outside upper center", ncols=columns, frameon=False)
+        _, names = by_digits.get_legend_handles_labels()
+        figure.legend(loc="outside upper center", ncols=len(names), frameon=False)
         return figure
 
     def __repr__(self) -> str:
@@ -193,6 +185,13 @@ class HorizonWork:
             f"{method} at rtol {', '.join(rtols)}" if method in tried else method
             for method, rtols in rows.items()
         )
+
+
+def _draw(by_digits: Axes, by_cost: Axes, points: list[HorizonPoint], how: dict[str, Any]) -> None:
+    """Draw points on both axes; the legend is that of the first."""
+    valid = [point.valid for point in points]
+    by_digits.plot([point.early for point in points], valid, **how)
+    by_cost.plot([1e6 * point.seconds for point in points], valid, **how | {"label": None})
 
 
 def _few_ticks(axis: Axes) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from inspect import signature
+from math import ceil
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_LONG = 22
-"""Letters in a name, of which there is room for two in a row."""
 NewFigure: TypeAlias = Callable[..., "Figure"]
 """Makes a new figure: pyplot's, or one of its own."""
 
@@ -59,49 +58,41 @@ class Request:
     horizon: float | None = None
     properties: dict[str, Any] = field(default_factory=dict)
 
-    def one_axes(self, size: tuple[float, float]) -> Axes:
-        """Return the axes that were given, or those of a new figure of a size, inches."""
-        if self.ax is None:
-            return new_axes(size, new_figure=self.new_figure)[0]
-        return checked_axes(self.ax, (1,), "")[0]
-
-    def stacked_axes(self, counts: Sequence[int], which: str) -> list[Axes]:
+    def several_axes(self, counts: Sequence[int], which: str, columns: int = 1) -> list[Axes]:
         """Return the axes that were given, or the most of ``counts`` in a new figure."""
-        if self.ax is None:
-            rows = max(counts)
-            size = 6.4, max(3.6, 0.6 + 1.8 * rows)
-            return new_axes(size, rows, new_figure=self.new_figure)
-        return checked_axes(self.ax, counts, which)
-
-    def label_outer(self, axes: Sequence[Axes]) -> None:
-        """Leave what new axes share to the lowest of them; given axes keep their labels."""
-        for axis in axes if self.ax is None else ():
-            axis.label_outer()
+        if self.ax is not None:
+            return checked_axes(self.ax, counts, which)
+        count = max(counts)
+        rows = ceil(count / columns)
+        columns = ceil(count / rows)
+        size = (6.4, max(3.6, 0.6 + 1.8 * rows)) if columns == 1 else (3.2 * columns, 3.2 * rows)
+        shared = "col" if columns == 1 else "none"
+        axes = new_axes(size, rows, columns, self.new_figure, sharex=shared)
+        for unused in axes[count:]:
+            unused.remove()
+        return axes[:count]
 
     def name_of(self, curve: str) -> str:
         """Return what the legend calls a curve: with the solution's label, if that has one."""
         return curve if self.label is None else f"{curve}, {self.label}"
 
     def shade(self, axes: Sequence[Axes]) -> None:
-        """Shade the times past which nothing is right; the first axes say so in their legend."""
+        """Shade the times past which nothing is right; the legend of the first axes says so."""
         end = self.solution.t_reached
         if self.valid_until in (None, end):
             return
-        for axis in axes:
+        for k, axis in enumerate(axes):
             colors = theme_of(axis)
             how: dict[str, Any] = {"facecolor": colors.line, "alpha": 0.6, "zorder": 0}
-            axis.axvspan(self.valid_until, end, label=self.after(), **how)
+            axis.axvspan(self.valid_until, end, label="_" * k + self.after(), **how)
 
-    def until(self) -> str:
-        """Return the words that say until when a run is right."""
-        return f"{self._right()} until {self.valid_until:.4g} s"
+    def right(self) -> str:
+        """Return the words for what is right."""
+        return "right" if self.horizon is None else f"right to {self.horizon:g} rad"
 
     def after(self) -> str:
-        """Return the words for what lies after that."""
-        return f"not {self._right()} after {self.valid_until:.4g} s"
-
-    def _right(self) -> str:
-        return "right" if self.horizon is None else f"right to {self.horizon:g} rad"
+        """Return the words for what lies past the time until which a run is right."""
+        return f"not {self.right()} after {self.valid_until:.4g} s"
 
 
 def new_axes(
@@ -121,17 +112,22 @@ def new_axes(
     return axes
 
 
+def one_axes(ax: Any, size: tuple[float, float], new_figure: NewFigure = figure_of_pyplot) -> Axes:
+    """Return the axes that were given, or those of a new figure of a size, inches."""
+    return new_axes(size, new_figure=new_figure)[0] if ax is None else checked_axes(ax, (1,), "")[0]
+
+
 def legend_above(axis: Axes, handles: Sequence[Artist] | None = None, columns: int = 3) -> None:
     """Name the curves, or the handles, above the axes, where no curve is, row by row."""
     handles = axis.get_legend_handles_labels()[0] if handles is None else handles
-    if handles:
-        is_long = any(len(str(handle.get_label())) > _LONG for handle in handles)
-        columns = min(columns, 2 if is_long else 3)
-        by_rows = [handle for k in range(columns) for handle in handles[k::columns]]
-        axis.legend(
-            handles=by_rows, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns,
+    for count in range(columns if handles else 0, 0, -1):
+        by_rows = [handle for k in range(count) for handle in handles[k::count]]
+        legend = axis.legend(
+            handles=by_rows, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=count,
             borderaxespad=0.2, borderpad=0.0, frameon=False, fontsize="small",
         )  # fmt: skip
+        if legend.get_window_extent().width < 1.1 * axis.get_window_extent().width:
+            return  # constrained layout will make the axes a little wider
 
 
 def checked_axes(ax: Any, counts: Sequence[int], which: str) -> list[Axes]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,15 +12,9 @@ from pendcore.messages import Floats
 
 MOST_FRAMES = 54_000
 """Half an hour at 30 frames a second."""
-FEWEST_PARTS, MOST_PARTS = 4, 64
-"""The tip's path has so many parts between two frames, so that it is smooth where the tip is
-fast."""
-PART = 0.1
-"""rad: links turn by no more than this in a part of the path, unless it has `MOST_PARTS`."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Moves:
+class Moves(NamedTuple):
     """What moves of one run, at the times of k frames.
 
     Attributes
@@ -31,20 +25,11 @@ class Moves:
         Pivot, joints and tip, m.
     reactions : ndarray, (k, n, 2)
         The force on each link at its joint, N.
-    path : ndarray, (parts (k-1) + 1, 2)
-        The tip, m, also between frames.
-    parts : int
-        The number of parts of the path between two frames.
-    total_length : float
-        m.
     """
 
     states: Floats
     places: Floats
     reactions: Floats
-    path: Floats
-    parts: int
-    total_length: float
 
 
 def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floats:
@@ -65,25 +50,8 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
 
 def moves_of(solution: Solution, times: Floats) -> Moves:
     """Return where a run with dense output is at the times of frames; it stays where it ends."""
-    start, end = solution.t_span[0], solution.t_reached
-    at = np.clip(times, min(start, end), max(start, end))
+    low, high = sorted((solution.t_span[0], solution.t_reached))
+    at = np.clip(times, low, high)
     states, scene = solution(at).T, solution.scene
     q, qd = np.hsplit(states, 2)
-    parts = _parts(at, qd)
-    between = np.linspace(0, len(at) - 1, parts * (len(at) - 1) + 1)
-    along = np.interp(between, np.arange(len(at)), at)
-    return Moves(
-        states=states,
-        places=scene.positions(at, q),
-        reactions=scene.reactions(at, q, qd),
-        path=scene.positions(along, np.hsplit(solution(along).T, 2)[0])[:, -1],
-        parts=parts,
-        total_length=float(sum(link.length for link in scene.links)),
-    )
-
-
-def _parts(times: Floats, rates: Floats) -> int:
-    """Return into how many parts the path between two frames is cut."""
-    turn = np.abs(rates).max(axis=1) * np.abs(np.diff(times)).max(initial=0.0)
-    fastest = float(np.nan_to_num(turn, nan=np.inf).max())
-    return int(np.clip(np.ceil(fastest / PART), FEWEST_PARTS, MOST_PARTS))
+    return Moves(states, scene.positions(at, q), scene.reactions(at, q, qd))

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pendcore.messages import Floats, whole_number
-from pendcore.plotting.axes import Request, grid, legend_above, point_style
+from pendcore.plotting.axes import Request, grid, legend_above, one_axes, point_style
 from pendcore.plotting.curve import curve_of
-from pendcore.plotting.style import DASHES, theme_of
+from pendcore.plotting.style import DASHES, as_drawn, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -22,40 +23,40 @@ _GID = "a curve of a run"
 
 
 def draw_path(asked: Request) -> list[Artist]:
-    """Draw the path of the tip, m, with the chain at the start and at the end."""
+    """Draw the path of the tip, m, and the chain: pale at the start, in its colour at the end."""
     t, q, _, _ = curve_of(asked.solution)
     places = asked.solution.scene.positions(t, q)
-    axis = asked.one_axes(_fitting(places))
-    theme = theme_of(axis)
-    color = theme.links[(len(q[0]) - 1 + _count(axis)) % len(theme.links)]
-    ends = (places[0], theme.lost, "start"), (places[-1], theme.ink, "end")
-    for pose, shade, name in ends:
-        is_named = asked.label is None and _count(axis) == 0
-        how: dict[str, Any] = {"color": shade, "label": name if is_named else f"_{name}"}
-        axis.plot(*pose.T, "o-", linewidth=1.4, markersize=3.5, zorder=1.5, **how)
-    ours = {"color": color, "label": asked.label or ("_tip" if _count(axis) else "tip")}
+    axis = one_axes(asked.ax, _fitting(places), asked.new_figure)
+    theme, count = theme_of(axis), _count(axis)
+    color = theme.run(count) if count else theme.link(q.shape[1] - 1)
+    hidden = "_" * bool(count or asked.label)
+    for pose, shade, name in ((places[0], theme.lost, "start"), (places[-1], color, "end")):
+        how: dict[str, Any] = {"color": shade, "label": f"{hidden}{name}", "zorder": 2.5}
+        axis.plot(*pose.T, "o-", linewidth=2.0, markersize=4, **how)
+    ours = {"color": color, "label": asked.label or f"{hidden}tip"}
     lines = _draw(axis, t, places[:, -1], asked, ours)
     # New axes are as large as what is drawn; others show more of the plane.
     axis.set_aspect("equal", adjustable="box" if asked.ax is None else "datalim")
     axis.yaxis.set_inverted(True)
-    axis.set(xlabel="x (m)", ylabel="y (m), downwards")
-    grid(axis)
-    legend_above(axis)
+    _name(axis, "x (m)", "y (m), downwards")
     return lines
 
 
 def draw_phase(asked: Request) -> list[Artist]:
-    """Draw the rate of each link (rad/s) over its angle (rad)."""
-    axis = asked.one_axes(_SIZE)
+    """Draw the rate of each link (rad/s) over its angle (rad), each on its own axes or on one."""
     t, q, qd, _ = curve_of(asked.solution)
-    colors = theme_of(axis).links
-    dashes = DASHES[_count(axis) // q.shape[1] % len(DASHES)]
+    n = q.shape[1]
+    axes = asked.several_axes((1, n), "one for each link", columns=3)
     lines: list[Artist] = []
-    for i, curve in enumerate(np.stack([q, qd], axis=-1).swapaxes(0, 1)):
-        ours = {"color": colors[i % len(colors)], "label": asked.name_of(f"link {i + 1}")}
-        lines += _draw(axis, t, curve, asked, ours | {"linestyle": dashes})
-    _name_phase(axis, "")
-    legend_above(axis)
+    is_apart = len(axes) == n
+    for i in range(n):
+        axis, index = (axes[i], f"_{{{i + 1}}}") if is_apart else (axes[0], "")
+        dashes = DASHES[_count(axis) * len(axes) // n % len(DASHES)]
+        name = f"link {i + 1}"
+        called = asked.label or f"_{name}" if is_apart else asked.name_of(name)
+        ours = {"color": theme_of(axis).link(i), "linestyle": dashes, "label": called}
+        lines += _draw(axis, t, np.stack([q[:, i], qd[:, i]], axis=1), asked, ours)
+        _name(axis, f"$q{index}$ (rad)", rf"$\dot q{index}$ (rad/s)")
     return lines
 
 
@@ -68,19 +69,19 @@ def draw_section(asked: Request) -> list[Artist]:
             "events=[pc.events.LinkAngle(1, np.pi / 2, direction=1)]), say"
         )
     event = _within("event", asked.event, 0, len(events) - 1)
-    found = events[event]
+    found, wanted = events[event], asked.solution.events_asked_for()[event]
     angles = (found.q + np.pi) % (2 * np.pi) - np.pi
     usual = _moving(angles) if asked.link is None else asked.link
     link = _within("link", usual, 1, angles.shape[1])
-    axis = asked.one_axes(_SIZE)
-    colors = theme_of(axis).links
-    ours: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 2.5}
-    ours |= {"color": colors[(link - 1) % len(colors)], "label": asked.label}
+    axis = one_axes(asked.ax, _SIZE, asked.new_figure)
+    in_few_digits = re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", repr(wanted))
+    happened = as_drawn(f"a point at each\n{wanted.name or in_few_digits}")
+    size = 3.0 if len(found) > 50 else 6.0
+    ours: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": size}
+    ours |= {"color": theme_of(axis).link(link - 1), "label": asked.label or happened}
     lines = axis.plot(angles[:, link - 1], found.qd[:, link - 1], **{**ours, **asked.properties})
-    _name_phase(axis, f"_{{{link}}}")
     axis.set_xlim(-np.pi, np.pi)
-    if asked.label is not None:
-        legend_above(axis)
+    _name(axis, f"$q_{{{link}}}$ (rad)", rf"$\dot q_{{{link}}}$ (rad/s)")
     return [*lines]
 
 
@@ -127,7 +128,7 @@ def _within(name: str, given: int | None, least: int, most: int) -> int:
     return value
 
 
-def _name_phase(axis: Axes, index: str) -> None:
-    axis.set_xlabel(f"$q{index}$ (rad)")
-    axis.set_ylabel(rf"$\dot q{index}$ (rad/s)")
+def _name(axis: Axes, x_label: str, y_label: str) -> None:
+    axis.set(xlabel=x_label, ylabel=y_label)
     grid(axis)
+    legend_above(axis)

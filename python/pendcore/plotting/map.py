@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from pendcore import Ensemble
 from pendcore.messages import Floats
-from pendcore.plotting.axes import checked_axes, legend_above, new_axes, require_name, whole_names
+from pendcore.plotting.axes import legend_above, one_axes, require_name, whole_names
 from pendcore.plotting.style import as_drawn, theme_of
-from pendcore.reducers import FirstEvent
+from pendcore.reducers import FirstEvent, Reducer
 
 WIDE = 30.0
 """The ratio of the largest to the least value from which a scale is logarithmic."""
@@ -39,6 +39,10 @@ class Axis(NamedTuple):
     label: str
     values: Floats
 
+    @classmethod
+    def of(cls, name: str, unit: str, values: Floats) -> Axis:
+        return cls(f"{name} ({unit})" if unit else name, values)
+
 
 def plot(
     found: Ensemble, what: str | None, ax: Any, resolved: Any, properties: dict[str, Any]
@@ -47,9 +51,11 @@ def plot(
     from matplotlib.collections import QuadMesh
     from matplotlib.lines import Line2D
 
-    shown = shown_of(found, what)
-    dimensions = len(found.shape)
-    if dimensions not in (1, 2):
+    reducers = found.request.reducers
+    if what is None:
+        what = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
+    shown = shown_of(values_of(found, what), what, reducers.get(what), ~found.success)
+    if len(found.shape) not in (1, 2):
         raise ValueError(
             f"the ensemble has the shape {found.shape}: a figure needs one axis or two: "
             "draw found.q or found[name] yourself"
@@ -57,55 +63,47 @@ def plot(
     mask = None if resolved is None else np.asarray(resolved, dtype=bool)
     if mask is not None and mask.shape != found.shape:
         raise ValueError(f"resolved: shape {mask.shape}: must be {found.shape}")
-    if dimensions == 1:
+    axes = [axis_of(found, k) for k in range(len(found.shape))]
+    if len(axes) == 1:
         given = whole_names(Ensemble.plot, Line2D, properties)
-    else:
-        given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
-    axis = new_axes(MAP_SIZE)[0] if ax is None else checked_axes(ax, (1,), "")[0]
-    if dimensions == 1:
-        return _draw_curve(axis, axis_of(found, 0), shown, mask, given)
-    return draw_map(axis, axis_of(found, 0), axis_of(found, 1), shown, mask, given)
+        return _draw_curve(one_axes(ax, MAP_SIZE), axes[0], shown, mask, given)
+    given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
+    return draw_map(one_axes(ax, MAP_SIZE), axes[0], axes[1], shown, mask, given)
 
 
-def shown_of(found: Ensemble, what: str | None) -> Shown:
-    """Return what is drawn of an ensemble for a name."""
-    reducers = found.request.reducers
-    if what is None:
-        what = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
+def values_of(found: Ensemble, what: str) -> Floats:
+    """Return the values of a reducer, or of a component of the end state, of each member."""
     require_name(what)
+    reducers, n = found.request.reducers, len(found.members.scene.links)
     if what in reducers:
-        reducer = reducers[what]
-        if reducer.labels(1):
+        if reducers[what].labels(1):
             raise ValueError(f"what = {what!r}: has several numbers for each member: draw them")
-        label = as_drawn(f"{what.replace('_', ' ')} ({reducer.unit})")
-        is_log = reducer.is_log_if_wide and is_wide(found[what])
-        why = "did not happen" if isinstance(reducer, FirstEvent) else "no value"
-        return Shown(label, found[what], _blanks(found, found[what], why), is_log)
+        return found[what]
     if found.request.t_eval is not None:
         raise ValueError(
             'keep="times" keeps states at several times, which are not one number for each member: '
             "draw found.q or found.qd yourself"
         )
-    n = len(found.members.scene.links)
     known = [f"{x}[{i}]" for x in ("q", "qd") for i in range(1, n + 1)]
     if what not in known:
         raise ValueError(f"what = {what!r}: must be one of {', '.join([*reducers, *known])}")
     kind, _, number = what.partition("[")
-    values = getattr(found, kind)[..., int(number[:-1]) - 1]
-    label = f"{what} at the end ({'rad' if kind == 'q' else 'rad/s'})"
-    return Shown(label, values, _blanks(found, values, "no value"))
+    values: Floats = getattr(found, kind)[..., int(number[:-1]) - 1]
+    return values
 
 
-def _blanks(found: Ensemble, values: Floats, why: str) -> dict[str, Mask]:
-    """Return which members have no value, by why that is so."""
-    is_blank = ~np.isfinite(values)
-    return {why: is_blank & found.success, "the run failed": is_blank & ~found.success}
-
-
-def is_wide(values: Floats) -> bool:
-    """Return whether positive values span so much that a logarithm shows them better."""
-    some = values[np.isfinite(values) & (values > 0)]
-    return some.size > 0 and bool(some.max() > WIDE * some.min())
+def shown_of(
+    values: Floats, what: str, reducer: Reducer | None, other: Mask, why: str = "the run failed"
+) -> Shown:
+    """Return how values are shown; those that are missing where ``other`` is have a reason."""
+    name, unit = f"{what} at the end", "rad" if what.startswith("q[") else "rad/s"
+    is_log, usual, blank = False, "no value", ~np.isfinite(values)
+    if reducer is not None:
+        name, unit = as_drawn(what.replace("_", " ")), reducer.unit
+        some = values[~blank & (values > 0)]
+        is_log = reducer.is_log_if_wide and some.size > 0 and some.max() > WIDE * some.min()
+        usual = "did not happen" if isinstance(reducer, FirstEvent) else usual
+    return Shown(f"{name} ({unit})", values, {usual: blank & ~other, why: blank & other}, is_log)
 
 
 def axis_of(found: Ensemble, k: int) -> Axis:
@@ -123,8 +121,7 @@ def axis_of(found: Ensemble, k: int) -> Axis:
         steps = np.diff(first)
         is_monotone = len(first) > 1 and ((steps > 0).all() or (steps < 0).all())
         if is_monotone and (along == first[:, None]).all():
-            unit = units[name]
-            return Axis(f"{name} ({unit})" if unit else name, np.asarray(first))
+            return Axis.of(name, units[name], np.asarray(first))
     return Axis(f"member along axis {k}", np.arange(found.shape[k], dtype=float))
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
+from math import floor, log10
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from pendcore import Energy
 from pendcore.messages import Floats
 from pendcore.plotting.axes import Request, grid, legend_above, point_style
 from pendcore.plotting.curve import curve_of
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+_PREFIXES = {-6: "\N{MICRO SIGN}", -9: "n", -12: "p", -15: "f", -18: "a"}
 _LEAST_SPAN = 0.1
 """deg, the least span of the angle axis, so that rest does not look like its last bits."""
 
@@ -38,62 +40,40 @@ def draw_rates(asked: Request) -> list[Artist]:
 
 
 def draw_reactions(asked: Request) -> list[Artist]:
-    """Draw the force on each link at its joint, N: x, y (downwards) and size."""
+    """Draw the force on each link at its joint, N: x, y (downwards) and magnitude."""
     t, q, qd, _ = curve_of(asked.solution)
     forces = np.moveaxis(asked.solution.scene.reactions(t, q, qd), 1, 0)
-    axes = asked.stacked_axes((len(forces),), "one for each joint")
+    axes = asked.several_axes((len(forces),), "one for each joint")
     theme = theme_of(axes[0])
     panels: dict[str, Curves] = {}
     for i, force in enumerate(forces):
         x, y = force.T
-        parts = {"x": x, "y, downwards": y}
-        panels[f"${force_name(i, i + 1)}$ (N)"] = with_sum(parts, {"size": np.hypot(x, y)}, theme)
-    return _draw(asked, axes, t, panels, named=1)
+        parts = {"x": x, "y, downwards": y, "$|F|$": np.hypot(x, y)}
+        panels[f"${force_name(i, i + 1)}$ (N)"] = in_colors(parts, theme, "$|F|$")
+    return draw_curves(asked, axes, t, panels)
 
 
 def draw_energy(asked: Request) -> list[Artist]:
-    """Draw kinetic, potential and total energy, J, and below them the ledger and its residual."""
+    """Draw kinetic, potential and total energy, J, and below them the ledger and its residual.
+
+    A single axes has the energies alone.
+    """
     curve = curve_of(asked.solution)
     energy = curve.energy()
     booked = {} if energy.ledger is None else dict(energy.ledger.items())
     losses = () if energy.ledger is None else energy.ledger.losses
     residual = booked.pop("residual", None)
     count = 1 + bool(booked) + (residual is not None)
-    axes = asked.stacked_axes((count,), "for the energies, the ledger and its residual")
+    axes = asked.several_axes((1, count), "for the energies, the ledger and its residual")
     theme = theme_of(axes[0])
-    panels = {"energy (J)": _energies(energy, theme)}
+    energies = {"kinetic": energy.kinetic, "potential": energy.potential, "total": energy.total}
+    panels = {"energy (J)": in_colors(energies, theme, "total")}
     if booked:
         parts = {f"{x} (lost)" if x in losses else x: y for x, y in booked.items()}
-        panels["work and loss (J)"] = with_sum(parts, {}, theme)
+        panels["work, loss (J)"] = in_colors(parts, theme)
     if residual is not None:
         panels["residual (J)"] = {"residual": (residual, theme.ink)}
-    return _draw(asked, axes, curve.t, panels, named=2)
-
-
-def draw_energies(asked: Request) -> list[Artist]:
-    """Draw kinetic, potential and total energy, J, on one axes, whatever else there is."""
-    curve = curve_of(asked.solution)
-    axes = asked.stacked_axes((1,), "")
-    panels = {"energy (J)": _energies(curve.energy(), theme_of(axes[0]))}
-    return _draw(asked, axes, curve.t, panels, named=1)
-
-
-def draw_force_sizes(asked: Request, percentile: float) -> list[Artist]:
-    """Draw the size of the force at each joint, or the first six, N, on one axes.
-
-    Peaks leave the axes where they are far above what a percentile of the sizes is.
-    """
-    t, q, qd, _ = curve_of(asked.solution)
-    sizes = np.hypot(*np.moveaxis(asked.solution.scene.reactions(t, q, qd), -1, 0)).T
-    axes = asked.stacked_axes((1,), "")
-    colors = theme_of(axes[0]).links
-    few = list(enumerate(sizes))[: len(colors)]  # the first, where there are many joints
-    curves = {f"$|{force_name(i, i + 1)}|$": (x, colors[i]) for i, x in few}
-    lines = _draw(asked, axes, t, {"force (N)": curves}, named=1)
-    typical = float(np.percentile(sizes.max(axis=0), percentile))
-    if sizes.max() > 1.5 * typical:
-        axes[0].set_ylim(0.0, 1.5 * typical)
-    return lines
+    return draw_curves(asked, axes, curve.t, panels)
 
 
 def force_name(first: int, second: int) -> str:
@@ -102,79 +82,75 @@ def force_name(first: int, second: int) -> str:
     return f"F_{{{first}{comma}{second}}}"
 
 
-def with_sum(parts: dict[str, Floats], sums: dict[str, Floats], theme: Theme) -> Curves:
-    """Return curves in colours, and what they make up in ink, behind them."""
-    own = {
-        name: (x, theme.parts[k % len(theme.parts)]) for k, (name, x) in enumerate(parts.items())
-    }
-    return own | {name: (x, theme.ink) for name, x in sums.items()}
-
-
-def _energies(energy: Energy, theme: Theme) -> Curves:
-    parts = {"kinetic": energy.kinetic, "potential": energy.potential}
-    return with_sum(parts, {"total": energy.total}, theme)
+def in_colors(parts: dict[str, Floats], theme: Theme, total: str = "") -> Curves:
+    """Return curves in the colours of parts, but in ink what they make up."""
+    colors = cycle(theme.parts)
+    return {name: (x, theme.ink if name == total else next(colors)) for name, x in parts.items()}
 
 
 def _draw_links(
     asked: Request, t: Floats, values: Floats, symbol: str, unit: str, least_span: float = 0.0
 ) -> list[Artist]:
     """Draw a number of each link, (k, n), each on its own axes or all on one."""
-    n = values.shape[1]
-    axes = asked.stacked_axes((1, n), "one for each link")
-    colors = theme_of(axes[0]).links
-    curves = {
-        f"${symbol}_{{{i + 1}}}$": (x, colors[i % len(colors)]) for i, x in enumerate(values.T)
-    }
-    is_apart = len(axes) == n
+    axes = asked.several_axes((1, values.shape[1]), "one for each link")
+    theme = theme_of(axes[0])
+    curves = {f"${symbol}_{{{i + 1}}}$": (x, theme.link(i)) for i, x in enumerate(values.T)}
     panels = {f"${symbol}$ ({unit})": curves}
-    if is_apart:
+    if len(axes) == len(curves):
         panels = {f"{name} ({unit})": {name: x} for name, x in curves.items()}
-    named = 0 if is_apart and asked.label is None else n
-    return _draw(asked, axes, t, panels, named, is_apart=is_apart, least_span=least_span)
+    return draw_curves(asked, axes, t, panels, least_span)
 
 
-def _draw(
+def draw_curves(
     asked: Request,
     axes: Sequence[Axes],
     t: Floats,
     panels: dict[str, Curves],
-    named: int,
-    *,
-    is_apart: bool = False,
     least_span: float = 0.0,
 ) -> list[Artist]:
-    """Draw each panel on its axes; the first few, ``named``, name their curves in a legend.
+    """Draw panels over time, each on its axes, as many as there are; a legend names each curve.
 
-    The legend calls a curve that is apart by its solution alone.
+    It leaves out what the axes above name; a curve that its axes name is called by its run alone.
     """
     lines: list[Artist] = []
-    for k, (axis, (y_label, curves)) in enumerate(zip(axes, panels.items(), strict=True)):
+    known: set[tuple[str, str]] = set()
+    for axis, (y_label, curves) in zip(axes, panels.items(), strict=False):
         dashes = DASHES[len(axis.lines) // len(curves) % len(DASHES)]
         for name, (values, color) in curves.items():
-            called = asked.name_of(name) if asked.label is None or not is_apart else asked.label
+            is_told = (name, color) in known
+            called = asked.name_of(name)
+            if y_label.startswith(name):
+                is_told, called = asked.label is None, asked.label or name
+            known.add((name, color))
             ours = {"linestyle": dashes, "marker": point_style(t), "color": color}
-            ours["label"] = called if k < named else f"_{called}"
+            ours["label"] = f"_{called}" if is_told else called
             lines += axis.plot(t, values, **(ours | asked.properties))
-        axis.set_ylabel(y_label)
-        _dress(axis, least_span)
-    asked.label_outer(axes)
+        _dress(axis, y_label, least_span)
     asked.shade(axes)
-    for axis, curves in zip(axes[: max(named, 1)], panels.values(), strict=False):
-        legend_above(axis, columns=max(len(curves), 2))  # a row for each run
+    for axis, curves in zip(axes, panels.values(), strict=False):
+        legend_above(axis, columns=len(curves) if len(curves) > 1 else 3)  # a row for each run
     return lines
 
 
-def _dress(axis: Axes, least_span: float) -> None:
-    """Name the time, and let rest look like rest: no offsets, no axis of last bits."""
+def _dress(axis: Axes, y_label: str, least_span: float) -> None:
+    """Name the axes, and let rest look like rest: no offsets, no axis of last bits."""
     from matplotlib.ticker import ScalarFormatter
 
-    axis.set_xlabel("t (s)")
+    if axis.xaxis.get_tick_params()["labelbottom"]:  # not where axes below have the same times
+        axis.set_xlabel("t (s)")
     grid(axis)
     axis.margins(x=0)
-    for ticks in (axis.xaxis.get_major_formatter(), axis.yaxis.get_major_formatter()):
-        if isinstance(ticks, ScalarFormatter):
-            ticks.set_useOffset(False)
     low, high = axis.get_ylim()
     if axis.get_autoscaley_on() and abs(high - low) < least_span:
         middle, half = (low + high) / 2, least_span / 2
         axis.set_ylim(middle - half, middle + half, auto=True)  # curves to come may need more
+    for ticks in (axis.xaxis.get_major_formatter(), axis.yaxis.get_major_formatter()):
+        if isinstance(ticks, ScalarFormatter):
+            ticks.set_useOffset(False)
+    power = 3 * floor(log10(max(-low, high)) / 3)
+    if isinstance(ticks, ScalarFormatter):  # a prefix of the unit, no power of ten in a corner
+        prefix = _PREFIXES.get(power, "")
+        ticks.set_powerlimits((power, power) if prefix else (-5, 6))
+        axis.yaxis.get_offset_text().set_visible(not prefix)
+        y_label = y_label.replace("(", f"({prefix}")
+    axis.set_ylabel(y_label)

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from pendcore import Solution
 from pendcore.messages import did_you_mean, positive, text
@@ -25,24 +25,19 @@ What = Literal[
 KINDS: tuple[str, ...] = get_args(What)
 
 
-class Kind(NamedTuple):
-    """A kind of figure: what draws it, and those of its parameters that not every kind has."""
-
-    draw: Callable[[Request], list[Artist]]
-    takes: tuple[str, ...] = ("label", "horizon")
-
-
-_FIGURES = {
-    "angles": Kind(draw_angles),
-    "rates": Kind(draw_rates),
-    "reactions": Kind(draw_reactions),
-    "energy": Kind(draw_energy),
-    "path": Kind(draw_path),
-    "phase": Kind(draw_phase),
-    "section": Kind(draw_section, ("event", "link", "label")),
-    "strip": Kind(draw_strip, ("t",)),
-    "free_bodies": Kind(draw_free_bodies, ("t",)),
+_ALONG_CURVES = ("label", "horizon")
+_FIGURES: dict[str, tuple[Callable[[Request], list[Artist]], tuple[str, ...]]] = {
+    "angles": (draw_angles, _ALONG_CURVES),
+    "rates": (draw_rates, _ALONG_CURVES),
+    "reactions": (draw_reactions, _ALONG_CURVES),
+    "energy": (draw_energy, _ALONG_CURVES),
+    "path": (draw_path, _ALONG_CURVES),
+    "phase": (draw_phase, _ALONG_CURVES),
+    "section": (draw_section, ("event", "link", "label")),
+    "strip": (draw_strip, ("t",)),
+    "free_bodies": (draw_free_bodies, ("t",)),
 }
+"""What draws each kind of figure, and those of its parameters that not every kind has."""
 
 
 def plot(
@@ -63,21 +58,28 @@ def plot(
     """
     from matplotlib.lines import Line2D
 
-    if (label := own.get("label")) is not None:
-        own = own | {"label": in_legend(text("label", label))}
-    draw = _kind(what, own, horizon).draw
+    require_name(what)
+    if what not in KINDS:
+        raise ValueError(f"what = {what!r}: {did_you_mean(what, KINDS)}")
+    draw, takes = _FIGURES[what]
+    own = {name: x for name, x in (own | {"horizon": horizon}).items() if x is not None}
+    for name in own:
+        if name not in takes:
+            having = [repr(kind) for kind, (_, others) in _FIGURES.items() if name in others]
+            raise ValueError(f"{name}: belongs to what = {' and '.join(having)}")
+    if "label" in own:
+        own["label"] = in_legend(text("label", own["label"]))
     given = whole_names(Solution.plot, Line2D, line_properties)
     if given and what == "free_bodies":
         raise TypeError(f"{next(iter(given))}: what = {what!r} has no lines: only arrows and rods")
     if horizon is not None:
-        valid_until = solution.valid_until(horizon)
+        valid_until = solution.valid_until(positive("horizon", horizon, "rad"))
     return draw(
         Request(
             solution=solution,
             ax=ax,
             new_figure=new_figure,
             valid_until=valid_until,
-            horizon=horizon,
             properties=given,
             **own,
         )
@@ -108,20 +110,3 @@ def save_figure(
     kind = Path(path).suffix.removeprefix(".")
     figure.savefig(drawn, dpi=150, format=kind or None)
     Path(path).write_bytes(drawn.getvalue())
-
-
-def _kind(what: str, own: dict[str, Any], horizon: float | None) -> Kind:
-    """Return a kind of figure; ValueError if there is none, or if it has no such parameter."""
-    require_name(what)
-    if what not in KINDS:
-        raise ValueError(f"what = {what!r}: {did_you_mean(what, KINDS)}")
-    kind = _FIGURES[what]
-    for name, value in own.items():
-        if value is not None and name not in kind.takes:
-            having = [repr(x) for x, one in _FIGURES.items() if name in one.takes]
-            raise ValueError(f"{name}: belongs to what = {' and '.join(having)}")
-    if horizon is not None:
-        positive("horizon", horizon, "rad")
-        if "horizon" not in kind.takes:
-            raise ValueError(f"horizon: what = {what!r} shows no times past which it could shade")
-    return kind

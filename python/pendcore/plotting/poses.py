@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from pendcore import Scene
+from pendcore.effects import Payload
 from pendcore.messages import Floats, finite_array, silence
 from pendcore.plotting import sketch
-from pendcore.plotting.axes import Request
+from pendcore.plotting.axes import Request, one_axes
 from pendcore.plotting.curve import curve_of, span_of
 from pendcore.plotting.over_time import force_name
 from pendcore.plotting.sketch import Sketch, direction
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _POSES, _A_ROW = 8, 4
-_LONGEST, _SHORTEST = 0.5, 0.16
+_LONGEST, _SHORTEST = 0.4, 0.14
 """The lengths of the longest and of the shortest arrow, as shares of the total length."""
 _WIDTH = 7.2
 """inches, of figures of poses."""
@@ -32,34 +33,37 @@ _WIDTH = 7.2
 def draw_strip(asked: Request) -> list[Artist]:
     """Draw the chain at some times, s, row by row, with the tip's path since the pose before."""
     dense = asked.solution.with_dense_output()
-    scene, reach = dense.scene, _total_length(dense.scene)
+    scene, reach = dense.scene, total_length(dense.scene)
     t, q, _, _ = curve_of(dense)
     at = _times(asked.t, np.linspace(t[0], t[-1], _POSES))
     poses = scene.positions(at, np.hsplit(dense(at).T, 2)[0])
     path = scene.positions(t, q)[:, -1]
-    shown = np.concatenate([poses.reshape(-1, 2), path])
+    shown = np.concatenate([poses.reshape(-1, 2), path[(t - at[0]) * (at[-1] - t) >= 0]])
     low, high = shown.min(axis=0), shown.max(axis=0)
     # One pose after the other, and one row below the other with room for the times.
-    step = np.maximum(high - low, 0.3 * reach) * [1.2, 1.0] + [0.0, 0.5 * reach]
+    margin = np.maximum(0.08 * (high - low), 0.5 * (0.6 * reach - (high - low)))
+    low, high = low - margin, high + margin + [0.0, 0.35 * reach]
+    step = high - low
     columns = min(len(at), _A_ROW)
-    rows = ceil(len(at) / columns)
-    wide, tall = step * [columns, rows]
-    axis = asked.one_axes((_WIDTH, float(np.clip(_WIDTH * tall / wide, 1.5, 9.0))))
-    colors = theme_of(axis).links
+    wide, tall = step * [columns, ceil(len(at) / columns)] + [0.0, 0.4 * reach]
+    size = _WIDTH, float(np.clip(_WIDTH * tall / wide, 1.5, 9.0))
+    axis = one_axes(asked.ax, size, asked.new_figure)
     artists: list[Artist] = []
     before = at[0]
     for k, (time, pose) in enumerate(zip(at, poses, strict=True)):
         moved = step * [k % columns, k // columns]
         since = (t - before) * (time - t) >= 0
-        color = colors[(len(pose) - 2) % len(colors)]
-        axis.plot(*(path[since] + moved).T, color=color, linewidth=1.0, alpha=0.6, zorder=1)
+        how: dict[str, Any] = {"color": theme_of(axis).link(len(pose) - 2), "linewidth": 1.0}
+        axis.plot(*(path[since] + moved).T, alpha=0.6, zorder=1, **how)
         artists += _draw_chain(axis, pose + moved, asked.properties)
-        below = low[0] + moved[0], high[1] + moved[1] + 0.12 * reach
-        artists.append(axis.text(*below, f"{time:.4g} s", va="top", fontsize="small"))
+        x, y = moved + np.array([(low[0] + high[0]) / 2, high[1] - 0.3 * reach])
+        how = {"ha": "center", "va": "top", "fontsize": "small"}
+        artists.append(axis.text(x, y, f"{time:.4g} s", **how))
         before = time
-    draw_scale(axis, low + step * [0, rows] + [0.0, 0.3 * reach], reach)
+    draw_scale(axis, low + np.array([0.1 * reach, tall - 0.2 * reach]), reach)
     axis.set_aspect("equal", adjustable="datalim")
-    axis.yaxis.set_inverted(True)
+    axis.set_xlim(low[0], low[0] + wide, auto=True)  # a figure of another shape shows more
+    axis.set_ylim(low[1] + tall, low[1], auto=True)
     axis.set_axis_off()
     return artists
 
@@ -69,25 +73,20 @@ def _draw_chain(axis: Axes, pose: Floats, properties: dict[str, Any]) -> list[Ar
     theme = theme_of(axis)
     lines: list[Artist] = []
     for i, ends in enumerate(pairwise(pose)):
-        ours = {"color": theme.links[i % len(theme.links)], "linewidth": 2.4}
+        ours = {"color": theme.link(i), "linewidth": 2.4}
         how = {**ours, "solid_capstyle": "round", "zorder": 2, **properties}
         lines += axis.plot(*np.array(ends).T, **how)
-    axis.plot(*pose.T, "o", color=theme.ink, markersize=3, zorder=3)
+    axis.plot(*pose.T, "o", color=theme.ink, markersize=min(3.0, 15 / len(pose)), zorder=3)
     return lines
 
 
 def draw_scale(axis: Axes, at: Floats, reach: float) -> None:
-    """Draw a bar of a round length, and say how long it is."""
-    length = round_length(0.5 * reach)
-    ink = theme_of(axis).quiet
-    axis.plot([at[0], at[0] + length], [at[1], at[1]], color=ink, linewidth=2.0)
-    axis.text(at[0] + 1.15 * length, at[1], f"{length:g} m", color=ink, va="center")
-
-
-def round_length(most: float) -> float:
-    """Return the largest of 1, 2, 5, 10, ... and their parts by ten that is not above ``most``."""
-    power = 10.0 ** floor(log10(most))
-    return float(f"{max(k for k in (1, 2, 5) if k * power <= most * (1 + 1e-12)) * power:.1g}")
+    """Draw a bar whose length is 1, 2 or 5 times a power of ten, and say how long it is."""
+    power = 10.0 ** floor(log10(0.5 * reach))
+    length = max(k * power for k in (1, 2, 5) if k * power <= 0.5 * reach)
+    ink, (x, y) = theme_of(axis).quiet, at
+    axis.plot([x, x + length], [y, y], color=ink, linewidth=2.0)
+    axis.text(x + length, y, f"  {length:g} m", color=ink, va="center")
 
 
 def draw_free_bodies(asked: Request) -> list[Artist]:
@@ -105,20 +104,24 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     largest = max(float(np.hypot(*one.force)) for link in forces for one in link)
     if not np.isfinite(largest):
         raise ValueError(f"t = {t:g}: the forces are not finite there, and cannot be drawn")
-    axis = asked.one_axes((min(3.3 * len(q) + 0.6, 16.0), 3.9))
-    on = Sketch(axis, reach := _total_length(scene))
+    size = min(3.3 * len(q) + 0.6, 16.0), 3.9
+    axis = one_axes(asked.ax, size, asked.new_figure)
+    on = Sketch(axis, reach := total_length(scene))
     right = 0.0
     for i, (angle, of_link) in enumerate(zip(q, forces, strict=True)):
-        # Forces that are zero but for rounding have no arrow.
-        seen = [one for one in of_link if np.hypot(*one.force) > 1e-9 * largest]
-        arrows = [_arrow(on, one, pose[i : i + 2], largest) for one in seen]
-        pairs = [*zip(seen, arrows, strict=True)]
-        free = [one.at + (-along if arrives else along) for one, (along, arrives) in pairs]
-        across = np.array([*pose[i : i + 2], *free])[:, 0]
+        ends = pose[i : i + 2]
+        alongs = arrows_of(np.array([one.force for one in of_link]), largest, reach)
+        drawn = [
+            (one, along, _would_lie_on_link(one, along, ends))
+            for one, along in zip(of_link, alongs, strict=True)
+            if along.any()
+        ]
+        free = [one.at - along if arrives else one.at + along for one, along, arrives in drawn]
+        across = np.array([*ends, *free])[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])
         right += np.ptp(across) + 0.5 * reach
-        _draw_body(on, i, angle, pose[i : i + 2] + moved, centers[i] + moved)
-        for one, (along, arrives) in pairs:
+        _draw_body(on, i, angle, ends + moved, centers[i] + moved)
+        for one, along, arrives in drawn:
             text = f"{one.name} = {np.hypot(*one.force):.3g} N"
             color = getattr(on.theme, one.kind)
             sketch.arrow(on, one.at + moved, along, text, color, arriving=arrives)
@@ -126,6 +129,17 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     before = len(axis.texts)
     sketch.finish(on)
     return [*axis.texts[before:]]
+
+
+def arrows_of(forces: Floats, full: float, reach: float) -> Floats:
+    """Return arrows, m, as long as forces (..., 2) are large, but neither too short nor too long.
+
+    The longest are those of ``full``, N, and more; forces that are zero but for rounding have none.
+    """
+    sizes = np.hypot(forces[..., :1], forces[..., 1:])
+    lengths = np.clip(_LONGEST * sizes / (full or 1.0), _SHORTEST, _LONGEST) * reach
+    arrows: Floats = forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full)
+    return arrows
 
 
 def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:
@@ -138,13 +152,10 @@ def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -
     sketch.number(on, parts, i + 1, direction(angle - np.pi / 2))
 
 
-def _arrow(on: Sketch, of: Force, ends: Floats, largest: float) -> tuple[Floats, bool]:
-    """Return the arrow of a force, m, and whether it arrives: else it would lie on the link."""
-    size = float(np.hypot(*of.force))
-    along = max(_LONGEST * size / largest, _SHORTEST) * on.size * of.force / size
+def _would_lie_on_link(of: Force, along: Floats, ends: Floats) -> bool:
+    """Whether the arrow of a force at a joint has to arrive there, because the link is ahead."""
     far = max(ends, key=lambda end: float(np.hypot(*(end - of.at)))) - of.at
-    arrives = of.kind == "force" and along @ far > 0.9 * np.hypot(*along) * np.hypot(*far)
-    return along, bool(arrives)
+    return bool(of.kind == "force" and along @ far > 0.9 * np.hypot(*along) * np.hypot(*far))
 
 
 class Force(NamedTuple):
@@ -209,15 +220,10 @@ def _drags(scene: Scene, t: float, q: Floats, qd: Floats) -> Floats:
 
 
 def _payload(scene: Scene) -> float:
-    values = scene.parameters()
-    return sum(
-        values[f"effect[{i}].mass"]
-        for i, effect in enumerate(scene.effects, 1)
-        if effect.kind == "payload"
-    )
+    return sum(effect.mass for effect in scene.effects if isinstance(effect, Payload))
 
 
-def _total_length(scene: Scene) -> float:
+def total_length(scene: Scene) -> float:
     return float(sum(link.length for link in scene.links))
 
 

@@ -51,13 +51,8 @@ class Sketch:
         """Draw a disc; the radius is a share of the size."""
         from matplotlib.patches import Circle
 
-        self.axes.add_patch(
-            Circle(
-                tuple(at),
-                radius * self.size,
-                **{"ec": self.theme.ink, "facecolor": self.theme.ground} | how,
-            )
-        )
+        how = {"ec": self.theme.ink, "facecolor": self.theme.ground} | how
+        self.axes.add_patch(Circle(tuple(at), radius * self.size, **how))
         self.drawn.append((np.atleast_2d(at), radius * self.size))
 
 

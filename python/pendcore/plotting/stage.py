@@ -6,17 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from pendcore import Solution
 from pendcore.messages import Floats, number, positive, text
 from pendcore.plotting.axes import NewFigure, Request, figure_of_pyplot
+from pendcore.plotting.curve import curve_of
 from pendcore.plotting.film_curves import TYPICAL, GrowingCurves, panels_of
 from pendcore.plotting.frames import Moves, frame_times, moves_of
-from pendcore.plotting.poses import draw_scale
-from pendcore.plotting.style import Theme, applied, in_legend, keep_style, theme_of
+from pendcore.plotting.poses import arrows_of, draw_scale, total_length
+from pendcore.plotting.sketch import direction
+from pendcore.plotting.style import applied, in_legend, keep_style, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation
@@ -29,10 +31,10 @@ HEIGHT = 4.5
 LETTERS, CLOCK = 14.0, 22.0
 """Points: a film 320 pixels wide has them 8 and 12 pixels high."""
 _LETTERING = {"font.size": LETTERS, "legend.handlelength": 0.7, "legend.columnspacing": 0.8}
-_LONGEST, _SHORTEST = 0.4, 0.14
-"""The lengths of arrows as shares of the total length; the longest from this percentile on."""
-_ROOM = 0.18
-"""The way from the head of an arrow to its text, as a share of the total length."""
+_MOST_NUMBERS = 6
+"""The most joints whose forces are written: more numbers would lie on each other."""
+_SIDES = np.array([0.0, 0.8, -0.8, 1.6, -1.6])
+"""rad, from the direction of an arrow: where its force may be written, what is best first."""
 _TAIL = 24
 """The trace fades in so many parts."""
 
@@ -67,14 +69,13 @@ def animate(
     """Return matplotlib's animation; it must be kept as long as it is to move."""
     from matplotlib.animation import FuncAnimation
 
-    known = names_of(solutions, names)
-    size = HEIGHT * 16 / 9, HEIGHT
-    stage = Stage(solutions, partial(figure_of_pyplot, figsize=size), choices, known)
+    new_figure = partial(figure_of_pyplot, figsize=(HEIGHT * 16 / 9, HEIGHT))
+    stage = Stage(solutions, new_figure, choices, names)
     frames, interval = len(stage.times), 1000.0 / choices.fps
     return FuncAnimation(stage.figure, stage.show, frames, interval=interval, blit=True)
 
 
-def names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tuple[str, ...]:
+def _names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tuple[str, ...]:
     """Return what the runs are called beside their tips; nothing for one that is alone."""
     for one in runs:
         if not isinstance(one, Solution):
@@ -86,6 +87,23 @@ def names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> tu
     return tuple(
         text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
     )
+
+
+class _Run(NamedTuple):
+    """A run with dense output, its name, and where it is in each frame; arrows of forces are in m.
+
+    It is right until a time, s.
+    """
+
+    solution: Solution
+    name: str
+    until: float
+    moves: Moves
+    arrows: Floats
+
+    @property
+    def is_right_to_its_end(self) -> bool:
+        return self.until == self.solution.t_reached
 
 
 class Stage:
@@ -103,189 +121,149 @@ class Stage:
         solutions: Sequence[Solution],
         new_figure: NewFigure,
         choices: Choices,
-        names: Sequence[str],
+        names: Sequence[str | None] | None,
     ) -> None:
         """Open a figure once all that can fail is computed."""
+        known = _names_of(solutions, names)
         self.times = frame_times(solutions, choices.fps, choices.speed)
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
         limit = choices.horizon
         ends = [one.t_reached if limit is None else one.valid_until(limit) for one in solutions]
-        pairs = zip(solutions, ends, strict=True)
-        last_right = [_last_right_frame(one, self.times, end) for one, end in pairs]
+        forces = np.concatenate([one.reactions.reshape(-1, 2) for one in moves])
+        full = float(np.percentile(np.hypot(*forces.T), TYPICAL))
+        reach = max(total_length(one.scene) for one in dense)
+        arrows = [arrows_of(one.reactions, full, reach) * choices.reactions for one in moves]
+        runs = [_Run(*one) for one in zip(dense, known, ends, moves, arrows, strict=True)]
         with applied(_LETTERING):
             self.figure = new_figure()
-            kinds = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
-            scenes, panels = _layout(self.figure, len(dense), sum(kinds.values()), choices)
-            self._curves = GrowingCurves(dense, kinds, panels)
-            arrows = [_arrows(one, moves) if choices.reactions else None for one in moves]
+            curves = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
+            rows = sum(rows for rows, _ in curves)
+            scenes, panels = _layout(self.figure, len(runs), rows, choices)
+            self._curves = GrowingCurves(curves, panels, self.times)
             for axis in scenes:
-                _frame_scene(axis, moves, [one for one in arrows if one is not None])
-            self._players = []
-            for k, (one, until) in enumerate(zip(moves, last_right, strict=True)):
-                axis, count = scenes[k % len(scenes)], one.places.shape[1] - 1
-                colors = _colors(theme_of(axis), k, count, is_alone=len(moves) == 1)
-                self._players.append(
-                    _Player(axis, one, colors, choices, until, arrows[k], names[k])
-                )
-            how: dict[str, Any] = {"transform": scenes[0].transAxes, "va": "top", "fontsize": CLOCK}
-            self._clock = scenes[0].text(0.03, 0.97, "", **how)
-            if limit is not None:
-                _say_horizon(solutions, choices, ends, scenes[0], panels)
-        self._pace = "" if choices.speed == 1.0 else f"  (x{choices.speed:g})"
+                _frame_scene(axis, runs, reach)
+            self._chains = []
+            for k, one in enumerate(runs):
+                axis, links = scenes[k % len(scenes)], range(len(one.solution.scene.links))
+                theme = theme_of(axis)
+                colors = [theme.link(i) if len(runs) == 1 else theme.run(k) for i in links]
+                self._chains.append(_Chain(axis, one, colors, choices.trace, self.times))
+            self._clock = _note(scenes[0], 0.97, fontsize=CLOCK)
+            _note(scenes[0], 0.87, _told(runs, choices, panels), color=theme_of(scenes[0]).quiet)
         for artist in self.moving():
             artist.set_animated(True)
 
     def moving(self) -> list[Artist]:
         """Return what has to be drawn anew in each frame, the lowest first."""
-        moving = [artist for player in self._players for artist in player.artists]
+        moving = [artist for chain in self._chains for artist in chain.artists]
         return [*moving, self._clock, *self._curves.artists]
 
     def show(self, k: int) -> list[Artist]:
         """Move everything to where it is in frame k, and return it."""
-        taken: list[Floats] = []
-        for player in self._players:
-            player.show(k, taken)
-        self._curves.show(self.times[k])
-        self._clock.set_text(f"t = {self.times[k]:.2f} s{self._pace}")
+        taken: list[tuple[Floats, Floats]] = []
+        for chain in self._chains:
+            chain.show(k, taken)
+        self._curves.show(k)
+        self._clock.set_text(f"t = {self.times[k]:.2f} s")
         return self.moving()
 
 
-class _Player:
+class _Chain:
     """One chain: its links, the trace of its tip, the forces at its joints, its name."""
 
     def __init__(
-        self,
-        axis: Axes,
-        moves: Moves,
-        colors: Sequence[str],
-        choices: Choices,
-        last_right: int,
-        arrows: Floats | None,
-        name: str,
+        self, axis: Axes, run: _Run, colors: Sequence[str], trace: float | None, times: Floats
     ) -> None:
         from matplotlib.collections import LineCollection
 
-        self._axis, self._colors, self._moves = axis, colors, moves
-        self._theme, self._last_right, self._forces = theme_of(axis), last_right, arrows
-        frames = (choices.trace or 0.0) * choices.fps / choices.speed
-        self._behind = round(min(frames, len(moves.places)))
+        self._axis, self._run, self._colors, self._theme = axis, run, colors, theme_of(axis)
+        sense = np.sign(times[-1] - times[0])
+        self._is_right = run.is_right_to_its_end | (sense * (times - run.until) <= 0)
+        t, q, _, _ = curve_of(run.solution)
+        self._path = run.solution.scene.positions(t, q)[:, -1]
+        ends = sense * times - np.array([[trace or 0.0], [0.0]])
+        self._tails = np.searchsorted(sense * t, ends, "right").T
         alpha = np.linspace(0.05, 0.8, _TAIL)
         self._trace = LineCollection([], linewidths=1.8, alpha=alpha, capstyle="butt", zorder=2)
         axis.add_collection(self._trace, autolim=False)
         slim = min(1.0, 12 / len(colors))  # where there are many links
-        how: dict[str, Any] = {
-            "linewidth": max(6 * slim**0.5, 3.0),
-            "solid_capstyle": "round",
-            "zorder": 3,
-        }
-        self._links = [axis.plot([], [], color=color, **how)[0] for color in colors]
+        how: dict[str, Any] = {"linewidth": max(6 * slim**0.5, 3.0), "solid_capstyle": "round"}
+        self._links = [axis.plot([], [], color=color, zorder=3, **how)[0] for color in colors]
         ink = self._theme.ink
         (self._joints,) = axis.plot([], [], "o", color=ink, markersize=6.5 * slim, zorder=4)
         self.artists: list[Artist] = [self._trace, *self._links, self._joints]
-        self._name: Any = None
-        if arrows is not None:
-            n, color = arrows.shape[1], self._theme.force
+        self._newtons: list[Any] = []
+        if run.arrows.any():
+            n, color = len(colors), self._theme.force
             self._arrows: Any = axis.quiver(
                 *np.zeros((4, n)), color=color, angles="xy", scale_units="xy", scale=1.0,
                 width=0.008, headwidth=3.6, headlength=4.0, headaxislength=4.0, zorder=5,
             )  # fmt: skip
-            self._sizes = [self._text(color, ha="center", va="center") for _ in range(n)]
-            self.artists += [self._arrows, *self._sizes]
-        if name:
-            self._name = self._text(self._colors[-1], va="center")
-            self._name.set_text(in_legend(name))
-            self.artists.append(self._name)
+            few = n if n <= _MOST_NUMBERS else 0
+            self._newtons = [self._text("", color) for _ in range(few)]
+            self.artists += [self._arrows, *self._newtons]
+        self._name = self._text(in_legend(run.name), colors[-1])
+        self.artists += [self._name] * bool(run.name)
 
-    def _text(self, color: str, **how: Any) -> Any:
+    def _text(self, text: str, color: str) -> Any:
         """Return a text that can be read in front of anything."""
         from matplotlib.patheffects import withStroke
 
         halo = withStroke(linewidth=4.0, foreground=self._theme.ground)
-        return self._axis.text(0.0, 0.0, "", color=color, path_effects=[halo], zorder=6, **how)
+        how: dict[str, Any] = {"path_effects": [halo], "ha": "center", "va": "center", "zorder": 6}
+        return self._axis.text(0.0, 0.0, text, color=color, **how)
 
-    def show(self, k: int, taken: list[Floats]) -> None:
+    def show(self, k: int, taken: list[tuple[Floats, Floats]]) -> None:
         """Move everything to frame k; names keep clear of those of others, ``taken``."""
-        places, is_right = self._moves.places[k], k <= self._last_right
-        colors = self._colors if is_right else [self._theme.lost] * len(self._links)
+        places = self._run.moves.places[k]
+        colors = self._colors if self._is_right[k] else [self._theme.lost] * len(self._links)
         for i, (link, color) in enumerate(zip(self._links, colors, strict=True)):
             link.set_data(*places[i : i + 2].T)
             link.set_color(color)
         self._joints.set_data(*places.T)
-        if self._behind > 0:
-            parts = self._moves.parts
-            tail = self._moves.path[parts * max(k - self._behind, 0) : parts * k + 1]
-            cuts = np.linspace(0, len(tail) - 1, _TAIL + 1).astype(int)
-            self._trace.set_segments([tail[i : j + 1] for i, j in pairwise(cuts)])
-            self._trace.set_color(colors[-1])
-        if self._forces is not None:
-            self._show_forces(places, self._forces[k], self._moves.reactions[k])
-        if self._name is not None:
+        tail = np.vstack([self._path[slice(*self._tails[k])], places[-1:]])
+        cuts = np.linspace(0, len(tail) - 1, _TAIL + 1).astype(int)
+        self._trace.set_segments([tail[i : j + 1] for i, j in pairwise(cuts)])
+        self._trace.set_color(colors[-1])
+        if self._run.arrows.any():
+            self._show_forces(places, self._run.arrows[k], self._run.moves.reactions[k])
+        if self._run.name:
             self._show_name(places, taken)
 
     def _show_forces(self, places: Floats, arrows: Floats, forces: Floats) -> None:
-        """Draw the arrows, m, and write the forces, N, at their heads, off the rods."""
-        newtons = np.hypot(*forces.T)
+        """Draw the arrows, m, and write the forces, N, at their heads, off the rods and arrows."""
         self._arrows.set_offsets(places[:-1])
         self._arrows.set_UVC(*arrows.T)
-        room = _ROOM * self._moves.total_length
-        for joint, along, size, force in zip(places, arrows, self._sizes, newtons, strict=False):
-            length = np.hypot(*along) or 1.0
-            ahead, aside = room * along / length, room * along[::-1] / length * [1.0, -1.0]
-            sides = [ahead, 0.7 * ahead + aside, 0.7 * ahead - aside]
-            spots = joint + along + np.array(sides)
-            clear = [_distance(spot, places) for spot in spots]
-            best = 0 if clear[0] > 0.7 * room else int(np.argmax(clear))
-            size.set_position(spots[best])
-            size.set_text(f"{force:.3g} N" if np.any(along) else "")
+        heads = places[:-1] + arrows
+        drawn = np.linspace([*places[:-1], *places[:-1]], [*places[1:], *heads], 30).reshape(-1, 2)
+        for head, along, size, force in zip(heads, arrows, self._newtons, forces, strict=False):
+            size.set_text(f"{np.hypot(*force):.3g} N")
+            size.set_visible(bool(along.any()))
+            sides = np.arctan2(along[1], along[0]) + _SIDES
+            spots = [self._beyond(size, head, direction(side)) for side in sides]
+            clear = [(np.abs(drawn - spot) - half).max(axis=1).min() for spot, half in spots]
+            best = next((i for i, room in enumerate(clear) if room > 0), int(np.argmax(clear)))
+            size.set_position(spots[best][0])
 
-    def _show_name(self, places: Floats, taken: list[Floats]) -> None:
+    def _show_name(self, places: Floats, taken: list[tuple[Floats, Floats]]) -> None:
         """Write the name beyond the tip, as the last link points, and clear of other names."""
-        left, right = self._axis.get_xlim()
-        low, high = sorted(self._axis.get_ylim())
-        line = LETTERS / 72 / HEIGHT * 1.2 * (high - low)
-        wide = 0.5 * line * len(self._name.get_text())
-        tip, along = places[-1], places[-1] - places[-2]
-        side = 1.0 if along[0] >= 0 else -1.0
-        if not left < tip[0] + side * (wide + line) < right:
-            side = -side
-        begin = tip[0] + 0.5 * side * line
-        left, right = sorted([begin, begin + side * wide])
-        height = tip[1]
-        while any(
-            left < other[1] and other[0] < right and abs(height - other[2]) < 0.99 * line
-            for other in taken
-        ):
-            height += line if along[1] >= 0 else -line
-        taken.append(np.array([left, right, height]))
-        self._name.set_position((begin, height))
-        self._name.set_ha("left" if side > 0 else "right")
+        along = places[-1] - places[-2]
+        spot, half = self._beyond(self._name, places[-1], along / np.hypot(*along))
+        step = np.copysign([0.0, 0.01 * np.ptp(self._axis.get_ylim())], along[1])
+        while any((np.abs(spot - other) < half + room).all() for other, room in taken):
+            spot = spot + step
+        taken.append((spot, half))
+        self._name.set_position(spot)
 
-
-def _colors(theme: Theme, k: int, links: int, *, is_alone: bool) -> list[str]:
-    """Return the colours of the links of run k: their own if it is alone and they are few."""
-    if is_alone:
-        return list(theme.links[:links]) if links <= len(theme.links) else [theme.blue] * links
-    return [theme.runs[k % len(theme.runs)]] * links
-
-
-def _arrows(moves: Moves, runs: Sequence[Moves]) -> Floats:
-    """Return the arrows of the forces, m, (k, n, 2): neither so long nor so short as they are."""
-    every = np.concatenate([np.hypot(*np.moveaxis(x.reactions, -1, 0)).ravel() for x in runs])
-    typical = float(np.percentile(every, TYPICAL)) or 1.0
-    sizes = np.hypot(*np.moveaxis(moves.reactions, -1, 0))[..., np.newaxis]
-    longest, shortest = np.array([_LONGEST, _SHORTEST]) * max(x.total_length for x in runs)
-    lengths = np.clip(longest * sizes / typical, shortest, longest) * (sizes > 1e-6 * typical)
-    arrows: Floats = moves.reactions / np.maximum(sizes, 1e-300) * lengths
-    return arrows
-
-
-def _distance(spot: Floats, places: Floats) -> float:
-    """Return how far a spot is from the nearest of the links between places, m."""
-    begin, along = places[:-1], np.diff(places, axis=0)
-    squares = np.maximum((along**2).sum(axis=1), 1e-300)
-    share = np.clip(((spot - begin) * along).sum(axis=1) / squares, 0.0, 1.0)
-    return float(np.hypot(*(begin + share[:, np.newaxis] * along - spot).T).min())
+    def _beyond(self, text: Any, at: Floats, towards: Floats) -> tuple[Floats, Floats]:
+        """Return where a text lies just beyond a point, but in the picture, and half its size."""
+        box = text.get_window_extent().transformed(self._axis.transData.inverted())
+        half = np.abs([box.width, box.height]) / 2
+        reach = 0.5 * half[1] + 1.0 / np.maximum(np.abs(towards) / half, 1e-9).max()
+        low, high = np.sort([self._axis.get_xlim(), self._axis.get_ylim()], axis=1).T
+        edge = half + 0.3 * half[1]
+        return np.clip(at + reach * towards, low + edge, high - edge), half
 
 
 def _layout(
@@ -302,12 +280,10 @@ def _layout(
     panels: list[Axes] = []
     if is_wide or choices.energy or choices.reactions:
         figure.set_layout_engine("constrained")
-        parts: Any
+        shape: dict[str, Any] = {"nrows": 2, "ncols": 1, "height_ratios": [2, rows]}
         if is_wide:
-            parts = figure.subfigures(1, 2, width_ratios=[height, width - height])
-        else:
-            parts = figure.subfigures(2, 1, height_ratios=[2, rows])
-        stage, beside = parts
+            shape = {"nrows": 1, "ncols": 2, "width_ratios": [height, width - height]}
+        stage, beside = figure.subfigures(**shape)
         panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
         for axis in panels:
             keep_style(axis)
@@ -315,41 +291,40 @@ def _layout(
     return [stage.add_axes((k / columns, 0.0, 1 / columns, 1.0)) for k in range(columns)], panels
 
 
-def _frame_scene(axis: Axes, moves: Sequence[Moves], arrows: Sequence[Floats]) -> None:
+def _frame_scene(axis: Axes, runs: Sequence[_Run], reach: float) -> None:
     """Fix the limits so that nothing ever leaves the picture, and draw pivots and a scale."""
-    reach = moves[0].total_length
-    ends = [one.places[:, :-1] + along for one, along in zip(moves, arrows, strict=False)]
-    places = np.concatenate([x.reshape(-1, 2) for x in (*(one.places for one in moves), *ends)])
-    low, high = places.min(axis=0), places.max(axis=0)
-    room = 2 * _ROOM * reach if len(arrows) else 0.0  # for the texts beyond the heads
-    margin = max(0.12 * max(float((high - low).max()), 0.2 * reach), room)
-    clock = [0.0, 0.12 * float((high - low).max())]
+    joints = [one.moves.places for one in runs]
+    heads = [one.moves.places[:, :-1] + one.arrows for one in runs]
+    drawn = np.concatenate([x.reshape(-1, 2) for x in (*joints, *heads)])
+    low, high = drawn.min(axis=0), drawn.max(axis=0)
+    span = float((high - low).max())
+    room = 0.36 * reach * any(one.arrows.any() for one in runs)  # for the texts beyond the heads
+    margin = max(0.12 * span, 0.024 * reach, room)
+    clock = [0.0, 0.12 * span]
     axis.plot(*np.array([low - margin - clock, high + margin]).T, alpha=0.0)
     axis.set_aspect("equal", adjustable="datalim")
     axis.margins(0.0)
     axis.invert_yaxis()
     axis.set_axis_off()
-    theme = theme_of(axis)
-    pivots = np.unique(np.concatenate([one.places[:1, 0] for one in moves]), axis=0)
-    axis.plot(*pivots.T, "^", color=theme.quiet, markersize=12, zorder=1, linestyle="")
+    pivots = np.unique([places[0, 0] for places in joints], axis=0)
+    how: dict[str, Any] = {"color": theme_of(axis).quiet, "markersize": 12, "zorder": 1}
+    axis.plot(*pivots.T, "^", linestyle="", **how)
     draw_scale(axis, np.array([low[0] - 0.7 * margin, high[1] + 0.7 * margin]), reach)
+    axis.apply_aspect()
 
 
-def _say_horizon(runs: Sequence[Solution], choices: Choices, ends: Sequence[float],
-                 stage: Axes, panels: Sequence[Axes]) -> None:  # fmt: skip
-    """Write below the clock until when all runs are right, and shade the curves after that."""
-    first = min(range(len(runs)), key=lambda k: abs(ends[k] - runs[k].t_span[0]))
-    asked = Request(solution=runs[first], horizon=choices.horizon, valid_until=ends[first])
-    asked.shade(panels)
-    if ends[first] != runs[first].t_reached:
-        color = theme_of(stage).quiet
-        how: dict[str, Any] = {"transform": stage.transAxes, "va": "top", "color": color}
-        stage.text(0.03, 0.87, asked.until(), **how)
+def _note(axis: Axes, height: float, text: str = "", **how: Any) -> Any:
+    """Write a text at a height of the stage, a share of its own."""
+    return axis.text(0.03, height, text, transform=axis.transAxes, va="top", **how)
 
 
-def _last_right_frame(solution: Solution, times: Floats, until: float) -> int:
-    """Return the last frame in which a run is right, if it is right until a time, s."""
-    if until == solution.t_reached:
-        return len(times)
-    past = (times - until) * (1 if times[-1] >= times[0] else -1) > 0
-    return int(np.argmax(past)) - 1 if past.any() else len(times)
+def _told(runs: Sequence[_Run], choices: Choices, panels: Sequence[Axes]) -> str:
+    """Say how fast time passes, and until when all runs are right; shade the curves after that."""
+    pace = f"{choices.speed:g} \N{MULTIPLICATION SIGN} real time"
+    told = [] if choices.speed == 1.0 else [pace]
+    if wrong := [one for one in runs if not one.is_right_to_its_end]:
+        first = min(wrong, key=lambda one: abs(one.until - one.solution.t_span[0]))
+        asked = Request(solution=first.solution, horizon=choices.horizon, valid_until=first.until)
+        asked.shade(panels)
+        told.append(f"{asked.right()} until {first.until:.4g} s")
+    return "\n".join(told)

@@ -55,6 +55,14 @@ class Theme:
         """The colours of one run after another where a run has one colour."""
         return self.ink, self.ochre, self.teal, self.purple, self.green, self.red
 
+    def link(self, i: int) -> str:
+        """Return the colour of a link, counted from 0; the seventh has that of the first."""
+        return self.links[i % len(self.links)]
+
+    def run(self, k: int) -> str:
+        """Return the colour of a run among several, counted from 0."""
+        return self.runs[k % len(self.runs)]
+
     # What drawings of mechanisms are coloured by: forces at joints, weights, couples, angles that
     # are measured, and other loads, such as drag.
     force = property(attrgetter("purple"))
@@ -126,8 +134,10 @@ def applied(others: Mapping[str, Any] | None = None) -> Iterator[None]:
     set_now: Any = mpl.rcParams  # matplotlib's types want each name as a literal
     usual: Any = mpl.rcParamsDefault
     is_dark = sum(to_rgb(set_now["axes.facecolor"])) < 1.5
-    asked: Any = {**sheet(DARK if is_dark else LIGHT), **(others or {})}
-    with mpl.rc_context({name: x for name, x in asked.items() if set_now[name] == usual[name]}):
+    house = sheet(DARK if is_dark else LIGHT)
+    asked: Any = {**house, **(others or {})}
+    ours = {name for name in asked if set_now[name] in (usual[name], house.get(name))}
+    with mpl.rc_context({name: asked[name] for name in ours}):
         yield
 
 

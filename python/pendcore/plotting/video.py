@@ -15,13 +15,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pendcore import Solution
-from pendcore.messages import Progress, reporting, warn, whole_file, whole_number
-from pendcore.plotting.stage import HEIGHT, Choices, Stage, names_of
+from pendcore.messages import Progress, reporting, warn, whole_file
+from pendcore.plotting.stage import HEIGHT, Choices, Stage
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+
+Pixels = npt.NDArray[np.uint8]
 
 SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
 """The size of a film in pixels, unless another is asked for."""
@@ -44,7 +47,6 @@ def to_video(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    known = names_of(solutions, names)
     target = Path(path)
     kind = target.suffix.lower()
     if kind not in SIZES:
@@ -61,10 +63,10 @@ def to_video(
             f"fps = {choices.fps}: must be at most {_MOST_GIF_RATE:g} (1/s) in a GIF: browsers "
             "show shorter frames too slowly"
         )
-    width, height = _even_size(size, SIZES[kind])
+    width, height = _even_size(SIZES[kind] if size is None else size)
     dpi = min(height, 9 / 16 * width) / HEIGHT
     new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
-    stage = Stage(solutions, new_figure, choices, known)
+    stage = Stage(solutions, new_figure, choices, names)
     canvas = FigureCanvasAgg(stage.figure)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
@@ -79,22 +81,18 @@ def to_video(
             _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
         else:
             samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
-            _write_gif(samples, pictures, file, (width, height), choices.fps)
+            _write_gif(samples, pictures, file, choices.fps)
     return target
 
 
-def _even_size(given: tuple[int, int] | None, usual: tuple[int, int]) -> tuple[int, int]:
-    if given is None:
-        return usual
-    try:
-        width, height = given
-    except (TypeError, ValueError):
-        raise TypeError(f"size = {given!r}: must be (width, height), in pixels") from None
-    size = whole_number("size[0]", width), whole_number("size[1]", height)
-    for i, pixels in enumerate(size):
-        if not 64 <= pixels <= 8192 or pixels % 2:
-            raise ValueError(f"size[{i}] = {pixels}: must be even, and 64 to 8192 (pixels)")
-    return size
+def _even_size(given: tuple[int, int]) -> tuple[int, int]:
+    pixels = np.asarray(given)
+    is_whole = pixels.shape == (2,) and pixels.dtype.kind in "iu"
+    if not (is_whole and (pixels % 2 == 0).all() and 64 <= pixels.min() <= pixels.max() <= 8192):
+        raise ValueError(
+            f"size = {given!r}: must be (width, height) in pixels, both even, and 64 to 8192"
+        )
+    return int(pixels[0]), int(pixels[1])
 
 
 def _pictures(
@@ -102,8 +100,8 @@ def _pictures(
     canvas: Any,
     frames: Sequence[int],
     report: Callable[[float], object] = lambda fraction: None,
-) -> Iterator[memoryview]:
-    """Yield the pixels of frames, RGBA; they are overwritten by the next."""
+) -> Iterator[Pixels]:
+    """Yield the pixels of frames, (height, width, 4); they are overwritten by the next."""
     canvas.draw()
     still = canvas.copy_from_bbox(stage.figure.bbox)
     count = len(frames)
@@ -111,7 +109,7 @@ def _pictures(
         canvas.restore_region(still)
         for artist in stage.show(k):
             stage.figure.draw_artist(artist)
-        yield canvas.buffer_rgba()
+        yield np.asarray(canvas.buffer_rgba())
         report((k + 1) / count)
 
 
@@ -127,7 +125,7 @@ def _ffmpeg() -> str | None:
 
 
 def _write_mp4(
-    pictures: Iterator[memoryview], ffmpeg: str, file: Path, size: tuple[int, int], fps: float
+    pictures: Iterator[Pixels], ffmpeg: str, file: Path, size: tuple[int, int], fps: float
 ) -> None:
     command = [
         ffmpeg, "-loglevel", "error", "-y",
@@ -140,7 +138,7 @@ def _write_mp4(
         assert process.stdin is not None
         try:
             for picture in pictures:
-                process.stdin.write(picture)
+                process.stdin.write(picture.data)
         except BrokenPipeError:
             pass  # ffmpeg says below why it ended
         except BaseException:
@@ -153,42 +151,33 @@ def _write_mp4(
 
 
 def _write_gif(
-    samples: Iterator[memoryview],
-    pictures: Iterator[memoryview],
-    file: Path,
-    size: tuple[int, int],
-    fps: float,
+    samples: Iterator[Pixels], pictures: Iterator[Pixels], file: Path, fps: float
 ) -> None:
     """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
-    from PIL.Image import Dither
+    from PIL.Image import Dither, fromarray
 
-    palette = _palette(samples, size)
+    palette = _palette(samples)
     first, *rest = (
-        _rgb(picture, size).quantize(palette=palette, dither=Dither.NONE) for picture in pictures
+        fromarray(picture[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
+        for picture in pictures
     )
-    ticks = [round((k + 1) * 1000 / fps / _GIF_TICK) for k in range(len(rest) + 1)]
-    durations = [_GIF_TICK * (b - a) for a, b in zip([0, *ticks], ticks, strict=False)]
+    ticks = np.round(np.arange(len(rest) + 2) * 1000 / fps / _GIF_TICK)
+    durations = (_GIF_TICK * np.diff(ticks)).astype(int).tolist()
     first.save(
         file, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0,
         optimize=False, disposal=1,
     )  # fmt: skip
 
 
-def _palette(samples: Iterator[memoryview], size: tuple[int, int]) -> Image:
+def _palette(samples: Iterator[Pixels]) -> Image:
     """Return an image whose palette has white, and the colours of the samples, 64 in all."""
     from PIL.Image import Dither, Quantize, fromarray, new
 
     # As one number of 24 bits, each colour is found once in no time: the thin traces count, too.
-    seen = [np.unique(np.array(_rgb(picture, size)) @ [1 << 16, 1 << 8, 1]) for picture in samples]
+    seen = [np.unique(picture[..., :3] @ [1 << 16, 1 << 8, 1]) for picture in samples]
     numbers = np.unique(np.concatenate(seen)).astype(">u4")
     colors = np.ascontiguousarray(numbers.view(np.uint8).reshape(1, -1, 4)[..., 1:])
     few = fromarray(colors).quantize(63, Quantize.MEDIANCUT, dither=Dither.NONE)
     palette = new("P", (1, 1))
     palette.putpalette([255, 255, 255, *(few.getpalette() or [])[: 3 * 63]])
     return palette
-
-
-def _rgb(picture: memoryview, size: tuple[int, int]) -> Image:
-    from PIL.Image import frombuffer
-
-    return frombuffer("RGBA", size, bytes(picture), "raw", "RGBA", 0, 1).convert("RGB")

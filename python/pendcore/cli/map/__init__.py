@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from pendcore.cli.map.refinement import Mask, levels_of, refined
 from pendcore.cli.map.table import MapAxis, MapTable, read_map_table
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.messages import Floats
-from pendcore.plotting import MAP_SIZE, Axis, Shown, draw_map, is_wide, new_axes
+from pendcore.plotting import MAP_SIZE, Axis, draw_map, new_axes, shown_of, values_of
 from pendcore.reducers import REDUCERS, FirstEvent, Reducer
 
 HELP = "draw a number over a plane of starts or parameters, and which pixels are resolved"
@@ -45,6 +46,17 @@ example:
 MOST_PIXELS = 100_000_000
 """The largest map: its values and masks take some 2 GB."""
 FILES = ("summary.txt", "map.npz", "map.png")
+_OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
+"""Those of the case that count in a map."""
+
+
+class _Asked(NamedTuple):
+    """What is asked for; without a reducer, a component of the end state."""
+
+    case: Case
+    table: MapTable
+    reducer: Reducer | None
+    args: argparse.Namespace
 
 
 @dataclass(slots=True)
@@ -54,7 +66,7 @@ class Pixels:
     values: Floats
     resolved: Mask
     computed: Mask
-    counts: dict[str, int] = field(default_factory=dict)
+    counts: Counter[str] = field(default_factory=Counter)
     forbidden: int = 0
 
 
@@ -93,12 +105,13 @@ def execute(args: argparse.Namespace) -> int:
         table = _asked_for(table, args)
         reducer = _reducer(table.show, case)
         levels_of((table.x.count, table.y.count), args.refine)
+    asked = _Asked(case, table, reducer, args)
     folder = args.out or Path("out", args.case.stem)
     with new_folder(folder):
         with blamed_on_usage():
-            pixels, complaint = _computed(case, table, reducer, args)
+            pixels, complaint = _computed(asked)
         files = FilesToWrite(folder, FILES)
-        told = _summary(case, table, pixels, args)
+        told = _summary(asked, pixels)
         with files.one("summary.txt") as path:
             path.write_text(told, encoding="utf-8")
         with files.one("map.npz") as path, path.open("wb") as file:
@@ -107,7 +120,7 @@ def execute(args: argparse.Namespace) -> int:
                 resolved=pixels.resolved, computed=pixels.computed, case=case.to_toml(),
             )  # fmt: skip
         with files.one("map.png") as path:
-            _save_figure(case, table, reducer, pixels, args, path)
+            _save_figure(asked, pixels, path)
         print(files.outcome(), file=sys.stderr)
         print(complaint or told, end="\n" * bool(complaint), file=sys.stderr if complaint else None)
         files.refuse_if_none()
@@ -143,78 +156,70 @@ def _reducer(show: str, case: Case) -> Reducer | None:
     kinds = {x.usual_name: x for x in REDUCERS if x is not FirstEvent and not x.labels(1)}
     if show in kinds:
         return kinds[show]()
-    if not re.fullmatch(r"qd?\[\d+\]", show):
+    component = re.fullmatch(r"qd?\[(\d+)\]", show)
+    if component is None:
         known = ", ".join([FirstEvent.usual_name, *kinds])
         raise UsageError(f"show = {show!r}: must be one of {known}, or q[i] or qd[i] of a link i")
+    _require_link(f"show = {show!r}", component[1], case)
     return None
 
 
-def _computed(
-    case: Case, table: MapTable, reducer: Reducer | None, args: argparse.Namespace
-) -> tuple[Pixels, str]:
+def _require_link(what: str, number: str, case: Case) -> None:
+    if not 1 <= int(number) <= len(case.scene.links):
+        raise UsageError(f"{what}: the scene has {len(case.scene.links)} links")
+
+
+def _computed(asked: _Asked) -> tuple[Pixels, str]:
     """Return the pixels, and a complaint if they are not all there."""
-    shape = (table.x.count, table.y.count)
+    table, shape = asked.table, (asked.table.x.count, asked.table.y.count)
     pixels = Pixels(np.full(shape, np.nan), np.zeros(shape, bool), np.zeros(shape, bool))
 
     def compute(level: tuple[int, int], wanted: Mask) -> tuple[Floats, Mask]:
         x, y = (replace(table.x, count=level[0]), replace(table.y, count=level[1]))
         i, k = np.nonzero(wanted)
-        return _run(case, table, reducer, x.values[i], y.values[k], pixels, args)
+        return _run(asked, x.values[i], y.values[k], pixels)
 
     complaint = ""
     try:
-        for found in refined(shape, args.refine, compute):
+        for found in refined(shape, asked.args.refine, compute):
             pixels.values, pixels.resolved, pixels.computed = found
     except KeyboardInterrupt:
         complaint = "interrupted: the map has what was computed before"
     return pixels, complaint
 
 
-def _run(
-    case: Case,
-    table: MapTable,
-    reducer: Reducer | None,
-    x: Floats,
-    y: Floats,
-    pixels: Pixels,
-    args: argparse.Namespace,
-) -> tuple[Floats, Mask]:
+def _run(asked: _Asked, x: Floats, y: Floats, pixels: Pixels) -> tuple[Floats, Mask]:
     """Run pixels (k,); return their values, and which of them are resolved."""
-    q0, qd0, vary = _starts(case, table, x, y)
+    case, table, reducer, args = asked
+    q0, qd0, vary = _starts(asked, x, y)
     options = {name: value for name, value in case.options.items() if name in _OPTIONS}
     values, resolved = np.full(len(x), np.nan), np.ones(len(x), dtype=bool)
-    wanted = np.ones(len(x), dtype=bool)
-    if isinstance(reducer, FirstEvent) and not vary:
-        wanted = ~is_forbidden(case.scene, q0, qd0, reducer.event)
-        pixels.forbidden += int(np.count_nonzero(~wanted))
+    wanted = ~_forbidden(asked, x, y)
+    pixels.forbidden += int(np.count_nonzero(~wanted))
     vary = {name: one[wanted] for name, one in vary.items()}
     found = ensemble(
         case.scene, case.t_span, q0[wanted], qd0[wanted], vary=vary, workers=args.workers,
         keep="end" if reducer is None else reducer, on_failure="ignore", **options,
     )  # fmt: skip
-    for name, count in found.counts().items():
-        pixels.counts[name] = pixels.counts.get(name, 0) + count
-    if reducer is None:
-        kind, _, number = table.show.partition("[")
-        if int(number[:-1]) > q0.shape[1]:
-            raise UsageError(f"show = {table.show!r}: the scene has {q0.shape[1]} links")
-        values[wanted] = getattr(found, kind)[:, int(number[:-1]) - 1]
-    else:
-        values[wanted] = found[reducer.usual_name]
+    pixels.counts.update(found.counts())
+    values[wanted] = values_of(found, table.show)
     if not args.no_trust:
         other = found.second(workers=args.workers, on_failure="ignore")
         resolved[wanted] = found.resolved(other)
     return values, resolved
 
 
-_OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
+def _forbidden(asked: _Asked, x: Floats, y: Floats) -> Mask:
+    """Return at which pixels (k,) the event cannot happen; where a parameter varies, none."""
+    q0, qd0, vary = _starts(asked, x, y)
+    if vary or not isinstance(asked.reducer, FirstEvent):
+        return np.zeros(len(x), dtype=bool)
+    return is_forbidden(asked.case.scene, q0, qd0, asked.reducer.event)
 
 
-def _starts(
-    case: Case, table: MapTable, x: Floats, y: Floats
-) -> tuple[Floats, Floats, dict[str, Floats]]:
+def _starts(asked: _Asked, x: Floats, y: Floats) -> tuple[Floats, Floats, dict[str, Floats]]:
     """Return angles and rates (k, n), and the parameters that vary, of pixels."""
-    n = len(case.scene.links)
+    case, table, *_ = asked
     q0, qd0 = np.tile(case.q0, (len(x), 1)), np.tile(case.qd0, (len(x), 1))
     vary: dict[str, Floats] = {}
     for axis, values in ((table.x, x), (table.y, y)):
@@ -222,15 +227,14 @@ def _starts(
         if start is None:
             vary[axis.name] = values
             continue
-        link = int(start[2])
-        if not 1 <= link <= n:
-            raise UsageError(f"{axis.name}: the scene has {n} links")
+        _require_link(axis.name, start[2], case)
         target = qd0 if start[1] == "qd0" else q0
-        target[:, link - 1] = np.radians(values) if start[1] == "q0_deg" else values
+        target[:, int(start[2]) - 1] = np.radians(values) if start[1] == "q0_deg" else values
     return q0, qd0, vary
 
 
-def _summary(case: Case, table: MapTable, pixels: Pixels, args: argparse.Namespace) -> str:
+def _summary(asked: _Asked, pixels: Pixels) -> str:
+    case, table, _, args = asked
     total = pixels.values.size
     begin, end = case.t_span
     lines = [
@@ -253,45 +257,22 @@ def _summary(case: Case, table: MapTable, pixels: Pixels, args: argparse.Namespa
     return "\n".join(lines) + "\n"
 
 
-def _save_figure(
-    case: Case,
-    table: MapTable,
-    reducer: Reducer | None,
-    pixels: Pixels,
-    args: argparse.Namespace,
-    path: Path,
-) -> None:
+def _save_figure(asked: _Asked, pixels: Pixels, path: Path) -> None:
     from matplotlib.figure import Figure
 
-    unit = reducer.unit if reducer else "rad" if table.show.startswith("q[") else "rad/s"
-    is_log = bool(reducer and reducer.is_log_if_wide) and is_wide(pixels.values)
-    label = f"{table.show.replace('_', ' ')} ({unit})"
-    shown = Shown(label, pixels.values, _blanks(case, table, reducer, pixels.values), is_log)
+    case, table, reducer, args = asked
+    forbidden = ~np.isfinite(pixels.values)
+    i, k = np.nonzero(forbidden)
+    forbidden[i, k] = _forbidden(asked, table.x.values[i], table.y.values[k])
+    shown = shown_of(pixels.values, table.show, reducer, forbidden, "the energy forbids it")
     (axes,) = new_axes(MAP_SIZE, new_figure=Figure)
-    mask = None if args.no_trust else pixels.resolved
-    draw_map(axes, _axis(table.x), _axis(table.y), shown, mask, {})
+    x, y = (_axis(case, axis) for axis in (table.x, table.y))
+    draw_map(axes, x, y, shown, None if args.no_trust else pixels.resolved, {})
     figure: Any = axes.figure
     figure.savefig(path, dpi=150)
 
 
-def _blanks(
-    case: Case, table: MapTable, reducer: Reducer | None, values: Floats
-) -> dict[str, Mask]:
-    """Return the pixels without a value, by why they have none."""
-    blank = ~np.isfinite(values)
-    if not isinstance(reducer, FirstEvent):
-        return {"no value": blank}
-    i, k = np.nonzero(blank)
-    q0, qd0, vary = _starts(case, table, table.x.values[i], table.y.values[k])
-    forbidden = np.zeros_like(blank)
-    if not vary:
-        forbidden[i, k] = is_forbidden(case.scene, q0, qd0, reducer.event)
-    return {"did not happen": blank & ~forbidden, "the energy forbids it": forbidden}
-
-
-def _axis(axis: MapAxis) -> Axis:
-    unit = {"q0": "rad", "qd0": "rad/s"}.get(axis.name.partition("[")[0], "")
-    name = axis.name
-    if name.startswith("q0_deg"):
-        name, unit = name.replace("_deg", ""), "degrees"
-    return Axis(f"{name} ({unit})" if unit else name, axis.values)
+def _axis(case: Case, axis: MapAxis) -> Axis:
+    starts = {"q0": "rad", "q0_deg": "deg", "qd0": "rad/s"}
+    unit = starts.get(axis.name.partition("[")[0]) or case.scene.parameter_units()[axis.name]
+    return Axis.of(axis.name.replace("q0_deg", "q0"), unit, axis.values)
