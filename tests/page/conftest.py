@@ -58,7 +58,7 @@ class Opened:
         browser.get_log("browser")
         browser.get_log("performance")
         browser.get(file.as_uri() + fragment)
-        self.wait("window.pendcorePage !== undefined || !message.hidden")
+        self.wait("window.pendcorePage !== undefined || message.textContent !== ''")
 
     def ask(self, expression):
         return self.browser.execute_script(f"return {expression}")
@@ -81,7 +81,7 @@ class Opened:
         """Give a menu or a field a value, as its reader does."""
         self.do(
             f"const one = document.querySelector({selector!r}); one.value = {value!r};"
-            f"one.dispatchEvent(new Event({event!r}))"
+            f"one.dispatchEvent(new Event({event!r}, {{ bubbles: true }}))"
         )
 
     def drag(self, *places):

@@ -24,7 +24,7 @@ def test_a_page_is_one_small_file_that_names_no_other(sol, tmp_path):
 
 
 def test_it_opens_from_disk_and_asks_for_nothing(page, browser):
-    page.wait("pendcorePage.validUntil !== null")
+    page.wait("pendcorePage.run.until !== null")
     page.do("document.getElementById('neighbours').click()")
     page.wait("pendcorePage.neighbours?.count === 1000")
     assert page.complaints() == []
@@ -95,7 +95,7 @@ def test_an_address_that_is_refused_shows_the_run_of_the_page(sol, opened):
         assert page.text("message") == f"The address holds a run that is refused: {told}"
     page = opened(sol)
     page.do("location.hash = 'case=null'")
-    page.wait("!message.hidden")
+    page.wait("message.textContent !== ''")
     assert page.text("bits").startswith("the bits of Python")
 
 
@@ -131,8 +131,8 @@ def test_a_run_with_events_has_a_hash_of_its_own(sol, opened):
 def test_a_backward_run_is_trusted_backward(opened):
     run = pc.simulate(pc.Scene.textbook(), q0=0.8, t_span=(5, 0))
     page = opened(run)
-    page.wait("pendcorePage.validUntil !== null")
-    assert page.ask("pendcorePage.validUntil") == pytest.approx(0.0, abs=1e-9)
+    page.wait("pendcorePage.run.until !== null")
+    assert page.ask("pendcorePage.run.until") == pytest.approx(0.0, abs=1e-9)
     assert page.text("trust") == "right to 0.1 rad to the end"
 
 
@@ -156,9 +156,9 @@ def test_a_blow_up_and_a_rest_are_told_as_python_tells_them(opened):
 def test_it_is_pale_past_the_time_until_which_it_is_right(opened):
     chaotic = pc.simulate(pc.Scene.textbook(), q0=0.0, t_span=(0, 30))
     page = opened(chaotic)
-    page.wait("pendcorePage.validUntil !== null")
-    assert page.ask("pendcorePage.validUntil") == pytest.approx(chaotic.valid_until(), abs=3.0)
-    until = page.ask("pendcorePage.validUntil")
+    page.wait("pendcorePage.run.until !== null")
+    assert page.ask("pendcorePage.run.until") == pytest.approx(chaotic.valid_until(), abs=3.0)
+    until = page.ask("pendcorePage.run.until")
     page.do("pendcorePage.go(1)")
     assert page.text("trust") == f"right to 0.1 rad until {until:.4g} s"
     page.do("pendcorePage.go(29)")
@@ -180,17 +180,25 @@ def test_neighbours_are_the_runs_beside_this_one(page, sol):
     assert found == pytest.approx(beside.q.ravel(), abs=1e-6)
 
 
-def test_the_ledger_is_drawn_beside_the_energies(page, sol):
-    names = page.ask("pendcorePage.curves.energy.curves.map((one) => one.name)")
-    assert names == ["kinetic", "potential", "total", "viscous (lost)"]
-    total, lost = page.ask("[2, 3].map((k) => pendcorePage.curves.energy.curves[k].y.at(-1))")
+def test_work_and_loss_have_a_chart_of_their_own_where_there_are_some(page, sol, opened):
+    names = "pendcorePage.curves.{}.curves.map((one) => one.name)"
+    assert page.ask(names.format("energy")) == ["kinetic", "potential", "total"]
+    assert page.ask(names.format("work")) == ["viscous (lost)"]
+    last = "pendcorePage.curves.{}.curves.at(-1).y.at(-1)"
+    total, lost = (page.ask(last.format(chart)) for chart in ("energy", "work"))
     assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
+    hidden = "document.getElementById('work').hidden"
+    assert page.ask(hidden) is False
+    free = opened(pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 1)))
+    assert free.ask(hidden) is True
 
 
 def test_what_accuracy_costs_is_measured(page):
     page.click("tab-accuracy")
+    assert page.ask("document.getElementById('cost').hidden") is True
     page.click("measure")
     page.wait("pendcorePage.measured !== undefined", 60)
+    assert page.ask("document.getElementById('cost').hidden") is False
     points = page.ask("pendcorePage.measured")
     taylor = [one for one in points if one["method"] == "taylor"]
     errors = [one["error"] for one in sorted(taylor, key=lambda one: -one["tolerance"])]

@@ -1,15 +1,13 @@
 /** What takes longer than a frame is asked of a worker (worker.mjs). */
 
-/** @type {(id: string) => string} */
-const scriptText = (id) => document.getElementById(id).textContent;
-
 /** Asks the worker, which may be busy with something older that nobody waits for any more. */
 export class Background {
   /** Gets what is known so far of a long task. */
   progress = null;
 
   constructor(bytes) {
-    const text = ["core-js", "worker-js"].map(scriptText).join("\n");
+    const scripts = ["core-js", "worker-js"].map((id) => document.getElementById(id).textContent);
+    const text = scripts.join("\n");
     this.worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
     this.worker.postMessage({ bytes: bytes.slice(0) });
     this.waiting = new Map();

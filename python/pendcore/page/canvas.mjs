@@ -42,12 +42,13 @@ export function drawText(pen, text, x, y, fill) {
   pen.fillText(text, x, y);
 }
 
-/** The colour of link i, counted from 0. */
-export function linkColor(i) {
-  return color(`link-${(i % 6) + 1}`);
-}
+/** The name of the colour of link i, counted from 0. */
+export const linkColor = (i) => `link-${(i % 6) + 1}`;
 
-export const FONT = "13px system-ui, sans-serif";
+/** The name of the colour of part i of a sum, such as an energy. */
+export const partColor = (i) => `part-${(i % 6) + 1}`;
+
+export const FONT = "13px system-ui";
 
 export function drawDisc(pen, place, radius) {
   pen.beginPath();

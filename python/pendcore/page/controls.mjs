@@ -10,7 +10,8 @@ function element(tag, properties = {}, children = []) {
   return made;
 }
 
-let counter = 0;
+const DIGITS = 6; // that a field shows; the value keeps all of its own until it is changed
+const DEGREE = Math.PI / 180;
 
 /** A power of ten that divides an interval into 200 to 2000 parts. */
 function roundStep(size) {
@@ -22,44 +23,7 @@ function rounded(value, step, round) {
   return Number((round(Number((value / step).toPrecision(12))) * step).toPrecision(12));
 }
 
-/** A number with a slider; `change` gets the new value. */
-export function numberField({
-  name,
-  unit,
-  value,
-  low,
-  high,
-  whole = false,
-  positive = false,
-  change,
-}) {
-  const step = whole ? 1 : roundStep(high - low);
-  const field = element("input", {
-    type: "number",
-    step: whole ? "1" : "any",
-    value: String(Number(value.toPrecision(7))),
-  });
-  const slider = element("input", {
-    type: "range",
-    min: String(positive ? step : rounded(low, step, Math.floor)),
-    max: String(rounded(high, step, Math.ceil)),
-    step: String(step),
-    value: String(value),
-    "aria-label": `${name}, ${unit || "no unit"}`,
-  });
-  const take = (text, other) => {
-    const number = Number(text);
-    // On the way to 0.5 a field holds 0, which is no mass and no length.
-    const isNumber = text !== "" && Number.isFinite(number) && (number > 0 || !positive);
-    field.setAttribute("aria-invalid", String(!isNumber));
-    if (!isNumber) return;
-    other.value = text;
-    change(number);
-  };
-  field.addEventListener("input", () => take(field.value, slider));
-  slider.addEventListener("input", () => take(slider.value, field));
-  return labelled(unit ? `${name} (${unit.replace("^2", "²")})` : name, field, slider);
-}
+let counter = 0;
 
 /** A name before its field, and what else belongs to it. */
 function labelled(name, field, ...more) {
@@ -70,22 +34,11 @@ function labelled(name, field, ...more) {
 
 /** A menu of values, each with the text that it shows. */
 function menuOf(options, properties = {}) {
-  const shown = options.map(([value, textContent]) => element("option", { value, textContent }));
+  const shown = options.map(([value, text]) => new Option(text, value));
   return element("select", properties, shown);
 }
 
-function choice(name, words, value, change) {
-  const select = menuOf(words.map((one) => [one, one]));
-  select.value = value;
-  select.addEventListener("change", () => change(select.value));
-  return labelled(name, select);
-}
-
-/**
- * An interval for a slider about a value, within what the descriptor allows: "0 to 1", "> 0".
- *
- * @returns {[number, number]}
- */
+/** An interval for a slider about a value, within what the descriptor allows: "0 to 1", "> 0". */
 function interval(value, range) {
   const size = value === 0 ? 1 : 3 * Math.abs(value);
   const both = /^([0-9.]+) to ([0-9.]+)$/.exec(range);
@@ -98,11 +51,10 @@ const LETTERS = { tau: "τ", phid: "φ̇", phi: "φ", omega: "ω", rho: "ρ", ph
 const UPRIGHT = new Set("sin exp sgn at an or is of to the air constant".split(" "));
 
 /** A law as the core tells it, in HTML: letters in italics, indices, powers, signs. */
-export function formula(law) {
+function formula(law) {
   return law
     .replaceAll("<=", "≤")
     .replaceAll("+-", "±")
-    .replaceAll("&", "&amp;")
     .replace(/abs\(([^()]+)\)/g, "|$1|")
     .replace(/(^|[ (=])-(?=[ (|\w])/g, "$1−")
     .replace(/[A-Za-z]+(?=[\d_^ ,;)(/+|*-]|$)/g, (word) =>
@@ -111,189 +63,170 @@ export function formula(law) {
         : word,
     )
     .replace(/(<\/i>)(\d)/g, "$1<sub>$2</sub>")
+    .replace(/(<\/i>)([+-])(?=[ ,]|$)/g, "$1<sup>$2</sup>")
     .replace(/_(?:<i>)?(\w+)(?:<\/i>)?/g, "<sub>$1</sub>")
     .replace(/\^(?:<i>)?(\w+)(?:<\/i>)?/g, "<sup>$1</sup>");
 }
 
+function group(title, fields) {
+  return element("fieldset", {}, [element("legend", { textContent: title }), ...fields]);
+}
+
+function button(textContent, act) {
+  const made = element("button", { type: "button", textContent });
+  made.addEventListener("click", act);
+  return made;
+}
+
 export class Controls {
   /** `changed` is called when the case has changed; the fields stay, unless it has other parts. */
-  constructor(box, { kinds, defaults, changed }) {
-    this.box = box;
+  constructor(byId, { kinds, defaults, methods }, changed) {
+    this.boxes = [byId("setup"), byId("method")];
     this.kinds = kinds;
     this.defaults = defaults;
+    this.methods = methods;
     this.changed = changed;
-    this.given = null;
   }
 
   show(given) {
     this.given = given;
-    this.box.replaceChildren(
-      this.#world(),
+    const [setup, method] = this.boxes;
+    setup.replaceChildren(
+      this.#world(given),
       ...given.link.map((link, i) => this.#link(link, i)),
       ...given.effect.map((effect, i) => this.#effect(effect, i)),
       this.#more(),
     );
+    method.replaceChildren(this.#method(given.run), this.#tolerance(given.run));
   }
 
-  #group(title, fields) {
-    return element("fieldset", {}, [element("legend", { textContent: title }), ...fields]);
-  }
-
-  #field(name, unit, value, [low, high], set, more = {}) {
-    const change = (number) => {
+  /** A number with a slider over an interval; `set` gets the new value. */
+  #field(name, unit, value, ends, set, { whole = false, positive = false } = {}) {
+    const [low, high] = ends;
+    const step = whole ? 1 : roundStep(high - low);
+    const field = element("input", { type: "number", step: whole ? "1" : "any" });
+    field.value = String(Number(value.toPrecision(DIGITS)));
+    const slider = element("input", {
+      type: "range",
+      min: String(positive ? step : rounded(low, step, Math.floor)),
+      max: String(rounded(high, step, Math.ceil)),
+      step: String(step),
+      value: String(value),
+      "aria-label": `${name}, ${unit || "no unit"}`,
+    });
+    const take = (text, other) => {
+      const number = Number(text);
+      // On the way to 0.5 a field holds 0, which is no mass and no length.
+      const isNumber = text !== "" && Number.isFinite(number) && (number > 0 || !positive);
+      field.setAttribute("aria-invalid", String(!isNumber));
+      if (!isNumber) return;
+      other.value = text;
       set(number);
       this.changed();
     };
-    return numberField({ name, unit, value, low, high, change, ...more });
+    field.addEventListener("input", () => take(field.value, slider));
+    slider.addEventListener("input", () => take(slider.value, field));
+    return labelled(unit ? `${name} (${unit.replace("^2", "²")})` : name, field, slider);
   }
 
-  #world() {
-    const { given } = this;
-    const begin = given.run.t_start ?? 0;
-    return this.#group("World", [
+  #world(given) {
+    const { run } = given;
+    const ends = [1, 120].map((length) => (run.t_start ?? 0) + length);
+    return group("World", [
       this.#field("gravity", "m/s^2", given.gravity, [0, 25], (x) => (given.gravity = x)),
-      this.#field(
-        "end of the run",
-        "s",
-        given.run.t_end,
-        [begin + 1, begin + 120],
-        (x) => (given.run.t_end = x),
-      ),
+      this.#field("end of the run", "s", run.t_end, ends, (x) => (run.t_end = x)),
     ]);
   }
 
   #link(link, i) {
-    const { start } = this.given;
-    const degrees = 180 / Math.PI;
+    const { q, qd } = this.given.start;
     // A link keeps its shape: its centre moves with its length, its inertia with both.
     const center = link.center / link.length;
     const shape = link.mass > 0 ? link.inertia / (link.mass * link.length ** 2) : 0;
-    const scale = (mass, length) => {
-      const inertia = shape * mass * length ** 2;
-      Object.assign(link, { mass, length, center: center * length, inertia });
+    const scale = (changed) => {
+      const { mass, length } = Object.assign(link, changed);
+      Object.assign(link, { center: center * length, inertia: shape * mass * length ** 2 });
     };
-    const positive = { positive: true };
-    return this.#group(`Link ${i + 1}`, [
-      this.#field(
-        "mass",
-        "kg",
-        link.mass,
-        [0, 3 * link.mass || 3],
-        (x) => scale(x, link.length),
-        positive,
-      ),
-      this.#field(
-        "length",
-        "m",
-        link.length,
-        [0, 3 * link.length || 3],
-        (x) => scale(link.mass, x),
-        positive,
-      ),
-      this.#field(
-        "angle at the start",
-        "deg",
-        start.q[i] * degrees,
-        [-180, 180],
-        (x) => (start.q[i] = x / degrees),
-      ),
-      this.#field("rate at the start", "rad/s", start.qd[i], [-20, 20], (x) => (start.qd[i] = x)),
+    const size = (name, unit) => {
+      const interval = [0, 3 * link[name] || 3];
+      const set = (x) => scale({ [name]: x });
+      return this.#field(name, unit, link[name], interval, set, { positive: true });
+    };
+    const angle = q[i] / DEGREE;
+    return group(`Link ${i + 1}`, [
+      size("mass", "kg"),
+      size("length", "m"),
+      this.#field("angle at the start", "deg", angle, [-180, 180], (x) => (q[i] = x * DEGREE)),
+      this.#field("rate at the start", "rad/s", qd[i], [-20, 20], (x) => (qd[i] = x)),
     ]);
   }
 
   #effect(effect, i) {
     const known = this.kinds.find((one) => one.kind === effect.kind);
-    const remove = element("button", { type: "button", textContent: "Remove" });
-    remove.addEventListener("click", () => {
+    const remove = () => {
       this.given.effect.splice(i, 1);
       this.show(this.given);
       this.changed();
-    });
-    const fields = this.#parameters(effect, known.parameters);
-    return this.#group(`${i + 1}: ${known.name}`, [
+    };
+    return group(`${i + 1}: ${known.name}`, [
       element("p", { className: "small", textContent: known.sentence }),
       element("p", { className: "law", innerHTML: formula(known.law) }),
-      ...fields,
-      remove,
+      ...this.#parameters(effect, known.parameters),
+      button("Remove", remove),
     ]);
   }
 
+  /** Fields for the numbers among parameters, for those of a pair and of a part, too. */
   #parameters(values, parameters) {
-    const fields = [];
-    for (const one of parameters) {
-      const value = values[one.name];
-      if (value === undefined || value === null) continue;
-      if (typeof value === "number" && Number.isFinite(value)) {
-        const whole = one.type === "int";
-        /** @type {[number, number]} */
-        const range = whole ? [1, this.given.link.length] : interval(value, one.range);
-        fields.push(
-          this.#field(one.name, one.unit, value, range, (x) => (values[one.name] = x), {
-            whole,
-            positive: />(?!=)/.test(one.range),
-          }),
-        );
-      } else if (Array.isArray(value) && value.length === 2 && one.type === "pair") {
-        one.components.forEach((component, k) => {
-          if (!Number.isFinite(value[k])) return;
-          const set = (x) => (value[k] = x);
-          fields.push(
-            this.#field(
-              `${one.name}, ${component}`,
-              one.unit,
-              value[k],
-              interval(value[k], one.range),
-              set,
-            ),
-          );
-        });
-      } else if (typeof value === "object" && !Array.isArray(value)) {
-        const part = this.kinds.find((other) => other.name === one.type);
-        if (part) fields.push(...this.#parameters(value, part.parameters));
-      }
-    }
-    return fields;
+    return parameters.flatMap(({ name, unit, range, type, components }) => {
+      const value = values[name];
+      const part = this.kinds.find((one) => one.name === type);
+      if (part && value) return this.#parameters(value, part.parameters);
+      const fieldOf = (label, row, key, more) => {
+        if (!Number.isFinite(row[key])) return [];
+        const ends = more.whole ? [1, this.given.link.length] : interval(row[key], range);
+        return [this.#field(label, unit, row[key], ends, (x) => (row[key] = x), more)];
+      };
+      if (type === "pair" && value)
+        return components.flatMap((one, k) => fieldOf(`${name}, ${one}`, value, k, {}));
+      return fieldOf(name, values, name, {
+        whole: type === "int",
+        positive: />(?!=)/.test(range),
+      });
+    });
   }
 
   #more() {
-    const named = (kind) => [kind, this.kinds.find((one) => one.kind === kind).name];
-    const select = menuOf(Object.keys(this.defaults).map(named), {
-      "aria-label": "Kind of effect",
-    });
-    const add = element("button", { type: "button", textContent: "Add" });
-    add.addEventListener("click", () => {
+    const named = ({ kind, name }) => [kind, name];
+    const offered = this.kinds.filter(({ kind }) => kind in this.defaults);
+    const select = menuOf(offered.map(named), { "aria-label": "Kind of effect" });
+    const add = () => {
       const copy = structuredClone(this.defaults[select.value]);
-      if (copy.joint > this.given.link.length) copy.joint = 1;
-      if (copy.link > this.given.link.length) copy.link = 1;
+      for (const key of ["joint", "link"]) if (copy[key] > this.given.link.length) copy[key] = 1;
       this.given.effect.push({ kind: select.value, ...copy });
       this.show(this.given);
       this.changed();
-    });
-    return this.#group("More effects", [select, " ", add]);
+    };
+    return group("More effects", [select, " ", button("Add", add)]);
   }
-}
 
-/** Fields for method and tolerance. */
-export function methodFields(box, given, methods, changed) {
-  const rtol = [given.run.rtol ?? 1e-6].flat();
-  const digits = Math.round(-Math.log10(Math.min(...rtol)));
-  const tolerance = numberField({
-    name: "digits: rtol = 10^-digits",
-    unit: "",
-    value: digits,
-    low: 2,
-    high: 14,
-    whole: true,
-    change: (x) => {
-      given.run.rtol = 10 ** -x;
-      changed();
-    },
-  });
-  const all = methods.includes(given.run.method) ? methods : [given.run.method, ...methods];
-  const method = choice("method", all, given.run.method, (name) => {
-    given.run.method = name;
-    delete given.run.step; // of a method with fixed steps
-    changed();
-  });
-  box.replaceChildren(method, tolerance);
+  #method(run) {
+    const { methods } = this;
+    const offered = methods.includes(run.method) ? methods : [run.method, ...methods];
+    const select = menuOf(offered.map((one) => [one, one]));
+    select.value = run.method;
+    select.addEventListener("change", () => {
+      run.method = select.value;
+      delete run.step; // of a method with fixed steps
+      this.changed();
+    });
+    return labelled("method", select);
+  }
+
+  #tolerance(run) {
+    const tightest = Math.min(...[run.rtol ?? 1e-6].flat());
+    const digits = Math.round(-Math.log10(tightest));
+    const set = (x) => (run.rtol = Number((10 ** -x).toPrecision(12)));
+    return this.#field("digits: rtol = 10^-digits", "", digits, [2, 14], set, { whole: true });
+  }
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64encode
+from contextlib import suppress
 from functools import cache
 from html import escape
 from importlib.resources import files
@@ -61,7 +62,6 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "hash": "" if has_events else solution.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
-        "can_run": core is not None,
         "kinds": [
             {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
             for one in _descriptors()
@@ -70,11 +70,11 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
         "recording": None if core is not None else _recording(solution),
-        "about": f"Made by pendcore {build.version}.",
-        "notice": told,
     }
     parts = {
         "TITLE": escape(text("title", title or "") or solution.name or "A pendulum"),
+        "ABOUT": f"Made by pendcore {build.version}.",
+        "NOTICE": escape(told),
         "STYLE": css_variables() + _source("style.css"),
         "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),
@@ -95,14 +95,10 @@ def why_it_plays_back(solution: Solution) -> str:
 def _horizon(solution: Solution, *, may_take_long: bool) -> float | None:
     """Return until when the run is right, s; None leaves it to the page to find out."""
     estimate = solution.known_error
-    if estimate is None:
-        if not may_take_long:
-            return None
-        try:
+    if estimate is None and may_take_long:
+        with suppress(ValueError):  # some runs have no second opinion
             estimate = solution.estimate_error(time_limit=_PATIENCE)
-        except ValueError:  # there is no second opinion on this run
-            return None
-    return estimate.valid_until(LIMIT)
+    return None if estimate is None else estimate.valid_until(LIMIT)
 
 
 @cache
@@ -154,14 +150,10 @@ def _method(case: Case, solution: Solution) -> str:
     """Return the method of a run, or "auto" where that takes the same: it goes on to do so."""
     asked, begin = solution.options, case.t_span[0]
     tolerances = {"rtol": asked["rtol"], "atol": asked["atol"]}
-    try:
-        with silence():
-            of_no_length = simulate(
-                case.scene, (begin, begin), case.q0, case.qd0, store="end", **tolerances
-            )
-        usual = of_no_length.method
-    except ValueError:
-        usual = ""
+    usual = ""
+    with silence(), suppress(ValueError):
+        start = (case.scene, (begin, begin), case.q0, case.qd0)
+        usual = simulate(*start, store="end", **tolerances).method
     is_adaptive = asked["step"] is None and not asked["compensated"]
     return "auto" if usual == solution.method and is_adaptive else solution.method
 
@@ -188,9 +180,8 @@ def _options() -> list[dict[str, Any]]:
 @cache
 def _defaults() -> dict[str, Any]:
     """Return parameters of each kind of effect to begin with: those of its first example."""
-    classes = {one.__name__: one for one in (*effects.kinds().values(), *effects.parts().values())}
     return {
-        kind: _parameters(eval(one.description.calls[0], dict(classes)))
+        kind: _parameters(eval(one.description.calls[0], dict(vars(effects))))
         for kind, one in effects.kinds().items()
         if not one.description.is_function
     }
@@ -198,17 +189,10 @@ def _defaults() -> dict[str, Any]:
 
 def _parameters(value: Any) -> dict[str, Any]:
     """Return the parameters of an effect, or of a part, that are not what they are if left out."""
-    found = {}
-    for one in value.description.parameters:
-        given = getattr(value, one.name)
-        if given is None or (not one.required and given == one.default):
-            continue
-        if one.part is not None:
-            given = _parameters(given)
-        elif one.type in ("pair", "floats"):
-            given = [float(x) for x in given]
-        found[one.name] = given
-    return found
+    return {
+        name: _parameters(one) if isinstance(one, effects.Part) else one
+        for name, one in value.particulars().items()
+    }
 
 
 def _recording(solution: Solution) -> dict[str, Any]:

@@ -4,25 +4,38 @@ import { load } from "../../../cpp/wasm/pendcore.mjs";
 import { Background } from "./background.mjs";
 import { addressOf, caseInAddress, parseCase, toPython, toToml, writeCase } from "./case.mjs";
 import { Chart } from "./chart.mjs";
-import { Controls, methodFields } from "./controls.mjs";
+import { Controls } from "./controls.mjs";
 import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
-import { coreBytes, LiveRun, Recording } from "./runs.mjs";
+import { coreBytes, forceSizes, LiveRun, Recording } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
 import { clamp, grid, simulateCase } from "./simulate.mjs";
-import { listenToKeys, listenToPointer, listenToView, STEP } from "./touch.mjs";
+import { listenToKeys, listenToPointer, listenToWheel, STEP } from "./touch.mjs";
 
 const TRACE = 2; // s
 const TRACE_PARTS = { least: 240, most: 2000, angle: 0.1 }; // in each, a link turns by this, rad
 const SETTLED = 300; // ms, after which the address follows a change
+const ASKED = 150; // ms, after which the worker is asked about a change
 const FORCES = 400; // times at which the largest force of a run is looked for
 const GHOST = 1e-9; // rad
-const FINDING_OUT = "how far it is right is being found out";
 const NEIGHBOURS = { count: 1000, spread: 1e-5, rate: 60 };
+const NOTHING = "nothing";
 
 /** @type {(id: string) => any} */
 const byId = (id) => document.getElementById(id);
 const data = parseCase(byId("data").textContent);
+const original = writeCase(data.case);
+
+function say(text) {
+  byId("message").textContent = text;
+}
+
+/** Moves the last link of a case at the start. */
+function away(angle) {
+  return ({ start }) => {
+    start.q[start.q.length - 1] += angle;
+  };
+}
 
 class Page {
   run = null;
@@ -33,91 +46,72 @@ class Page {
   hash = "";
   copied = null;
   measured = undefined;
+  /** The number of the joint that is dragged, or 0, and whether it was since the last frame. */
   dragged = 0;
-  /** Whether a joint was dragged since the last frame. */
   isMoved = false;
+  isPlaying = false;
   settling = undefined;
-  question = 0;
   before = undefined;
-  later = undefined;
-  /** Why the address was refused, if it was. */
-  refusal = "";
-  traceParts = TRACE_PARTS.least;
   /** Whether the case was refused, so that the picture is older than it. */
   isRefused = false;
   comparisons = {};
   /** What is said as long as it is not known until when the run is right. */
-  unknown = FINDING_OUT;
+  unknown = "";
 
   constructor(core, bytes) {
     this.core = core;
-    this.original = writeCase(data.case);
-    this.given = this.#fromAddress() ?? parseCase(this.original);
+    this.given = parseCase(original);
     this.t = this.given.run.t_start ?? 0;
-    this.speed = 1;
-    this.isPlaying = false;
-    this.validUntil = data.valid_until;
     this.view = new SceneView(byId("scene"));
     this.otherView = new SceneView(byId("other"));
     this.curves = new Curves(byId);
     this.cost = new Chart(byId("cost"), ["time (ms)", "error / total length"], { log: true });
     if (core) {
       this.background = new Background(bytes);
-      this.controls = new Controls(byId("setup"), {
-        kinds: data.kinds,
-        defaults: data.defaults,
-        changed: () => this.changed(),
-      });
+      this.controls = new Controls(byId, data, () => this.changed());
     } else {
       document.body.classList.add("without-core");
     }
-    byId("about").textContent = data.about;
-    byId("notice").textContent = data.notice;
-    byId("notice").hidden = data.notice === "";
+    this.rerun();
+    this.showFields();
+    this.follow();
     this.#listen();
-    this.begin();
     this.tell();
     requestAnimationFrame((now) => this.frame(now));
   }
 
-  /** The case in the address, or null: one that is refused is refused as a whole. */
-  #fromAddress() {
-    this.refusal = "";
+  /** Shows the case in the address, if it is another; one that is refused leaves all as it is. */
+  follow() {
+    const before = this.given;
     try {
-      return this.core && caseInAddress(data);
-    } catch (error) {
-      this.refusal = error.message;
-      return null;
-    }
-  }
-
-  #sayRefusal() {
-    if (this.refusal) this.say(`The address holds a run that is refused: ${this.refusal}`);
-  }
-
-  /** The first run: if the core refuses the case in the address, that of the page. */
-  begin() {
-    this.rerun();
-    if (this.run === null) {
-      this.refusal = byId("message").textContent;
-      this.given = parseCase(this.original);
+      const given = this.core && caseInAddress(data);
+      if (!given || writeCase(given) === writeCase(before)) return;
+      this.given = given;
       this.rerun();
+      this.showFields();
+    } catch (error) {
+      this.given = before;
+      say(`The address holds a run that is refused: ${error.message}`);
     }
-    this.#sayRefusal();
-    this.showFields();
   }
 
   showFields() {
-    if (!this.core) return;
-    this.controls.show(this.given);
-    methodFields(byId("method"), this.given, data.methods, () => this.changed());
+    this.controls?.show(this.given);
   }
 
-  /** The case has changed: it runs anew, and the address will hold it. */
+  /**
+   * The case has changed: it runs anew, and the address will hold it. If it is refused, the picture
+   * stays that of the last run that was possible, and nothing is said of it.
+   */
   changed() {
-    this.neighbours = null;
-    this.validUntil = null;
-    this.rerun();
+    try {
+      this.rerun();
+    } catch (error) {
+      this.isRefused = true;
+      say(error.message);
+      byId("bits").textContent = "";
+      this.#sayTrust();
+    }
     clearTimeout(this.settling);
     this.settling = setTimeout(() => this.settle(), SETTLED);
   }
@@ -139,101 +133,78 @@ class Page {
       window.parent.postMessage({ pendcore: writeCase(this.given) }, "*");
   }
 
+  /** Runs the case and shows it; a case that is refused throws an error, and all stays as it is. */
   rerun() {
-    let run;
-    try {
-      run = this.core
-        ? new LiveRun(this.core, this.given)
-        : new Recording(data.recording, this.given);
-    } catch (error) {
-      return this.refused(error.message);
-    }
+    const { core, given } = this;
+    const run = core ? new LiveRun(core, given) : new Recording(data.recording, given);
     this.run?.free();
     this.run = run;
+    this.neighbours = null;
     this.isRefused = false;
-    this.unknown = this.core ? FINDING_OUT : "how far it is right is not known";
-    this.say(run.success ? "" : run.message);
+    if (writeCase(given) === original) run.until = data.valid_until;
+    this.unknown = `how far it is right is ${core ? "being found out" : "not known"}`;
+    say(run.success ? "" : run.message);
     this.t = run.within(this.t);
     const time = byId("time");
     [time.min, time.max] = [run.begin, run.end].sort((a, b) => a - b).map(String);
     this.view.typicalForce = this.otherView.typicalForce = this.#typicalForce();
-    this.#ghost();
-    this.#offerComparisons();
-    this.#compare();
     if (!this.dragged) this.#bits();
-    this.curves.until = this.validUntil;
     this.curves.set(run);
-    const needed = (TRACE * this.curves.fastest) / TRACE_PARTS.angle;
-    this.traceParts = Math.ceil(clamp(needed, TRACE_PARTS.least, TRACE_PARTS.most));
-    this.#ask();
-    this.draw();
-    return undefined;
+    this.#offerComparisons();
+    this.showBeside();
   }
 
   /** What can run beside this one: without an effect, from another start, as the page was made. */
   #offerComparisons() {
     const menu = byId("compare");
     const before = menu.value;
-    const known = (kind) => data.kinds.find((one) => one.kind === kind).name;
+    const name = (kind) => data.kinds.find((one) => one.kind === kind).name;
+    const without = this.given.effect.map(({ kind }, i) => [
+      `without ${i + 1}: ${name(kind)}`,
+      (given) => given.effect.splice(i, 1),
+    ]);
     this.comparisons = {
-      nothing: null,
-      ...Object.fromEntries(
-        this.given.effect.map((one, i) => [
-          `without ${i + 1}: ${known(one.kind)}`,
-          (given) => given.effect.splice(i, 1),
-        ]),
-      ),
-      "a start 0.001 rad away": ({ start }) => (start.q[start.q.length - 1] += 1e-3),
-      "the run as it was": (given) => Object.assign(given, parseCase(this.original)),
+      [NOTHING]: null,
+      ...Object.fromEntries(without),
+      "a start 0.001 rad away": away(1e-3),
+      "the run as it was": (given) => Object.assign(given, parseCase(original)),
     };
-    const names = Object.keys(this.comparisons);
-    menu.replaceChildren(...names.map((name) => new Option(name, name)));
-    menu.value = names.includes(before) ? before : "nothing";
+    menu.replaceChildren(...Object.keys(this.comparisons).map((one) => new Option(one)));
+    menu.value = before in this.comparisons ? before : NOTHING;
   }
 
-  #compare() {
-    this.other?.free();
-    this.other = null;
+  /** Shows beside the run what the menu and the boxes under the picture say. */
+  showBeside() {
     const name = byId("compare").value;
-    const change = this.comparisons[name];
-    if (this.core && change) {
-      const given = structuredClone(this.given);
-      change(given);
-      try {
-        this.other = new LiveRun(this.core, given);
-      } catch (error) {
-        this.say(`${name}: ${error.message}`);
-      }
-    }
-    byId("beside").hidden = !this.other;
+    this.ghost = this.#beside(this.ghost, byId("ghost").checked && away(GHOST));
+    this.other = this.#beside(this.other, this.comparisons[name]);
+    for (const id of ["own-name", "beside"]) byId(id).hidden = !this.other;
     byId("other-name").textContent = name;
-    if (this.run) this.curves.compare(this.other?.n === this.run.n ? this.other : null);
+    this.curves.compare(this.other?.n === this.run.n ? this.other : null, name);
+    this.#ask();
+    this.draw();
   }
 
-  /** The picture stays that of the last run that was possible, and nothing is said of it. */
-  refused(reason) {
-    this.isRefused = true;
-    this.say(reason);
-    this.question += 1;
-    byId("bits").textContent = "";
-    this.#sayTrust("lost", "the picture is that of the last run that was possible");
+  /** A run of a changed case in the place of an older one; null without a change, or if refused. */
+  #beside(older, change) {
+    older?.free();
+    if (!this.core || !change) return null;
+    const given = structuredClone(this.given);
+    change(given);
+    try {
+      return new LiveRun(this.core, given);
+    } catch (error) {
+      say(`The run beside this one is refused: ${error.message}`);
+      return null;
+    }
   }
 
   /** The size of a force, N, than which few of the run are larger: arrows are as long as that. */
   #typicalForce() {
     const { run } = this;
-    const sizes = grid(run.begin, run.end, FORCES).flatMap((t) => {
-      const forces = run.reactions(t, run.state(t));
-      return Array.from({ length: run.n }, (_x, i) => Math.hypot(forces[2 * i], forces[2 * i + 1]));
-    });
+    const sizes = grid(run.begin, run.end, FORCES).flatMap((t) => forceSizes(run, t, run.state(t)));
     const sorted = sizes.filter(Number.isFinite).sort((a, b) => a - b);
     return sorted[Math.floor(0.95 * (sorted.length - 1))] || 1;
-  }
-
-  say(text) {
-    const message = byId("message");
-    message.textContent = text;
-    message.hidden = text === "";
   }
 
   /** Shows the hash of the run, beside Python's if it is still Python's run. */
@@ -247,84 +218,56 @@ class Page {
     this.hash = run.hash;
     run.free();
     scene.free();
-    if (writeCase(this.given) !== this.original || !data.hash) {
-      badge.textContent = `hash ${this.hash}`;
-      return;
-    }
-    const same = this.hash === data.hash;
-    badge.textContent = same
-      ? `the bits of Python: hash ${this.hash} = ${data.hash}`
-      : `not the bits of Python: hash ${this.hash}, Python's ${data.hash}`;
+    if (writeCase(this.given) !== original || !data.hash) badge.textContent = `hash ${this.hash}`;
+    else if (this.hash === data.hash)
+      badge.textContent = `the bits of Python: hash ${this.hash} = ${data.hash}`;
+    else badge.textContent = `not the bits of Python: hash ${this.hash}, Python's ${data.hash}`;
   }
 
-  #ghost() {
-    this.ghost?.free();
-    this.ghost = null;
-    if (!this.core || !byId("ghost").checked) return;
-    const start = structuredClone(this.given.start);
-    start.q[start.q.length - 1] += GHOST;
+  /** What takes longer than a frame comes later; what is told of an older run is dropped. */
+  async #ask() {
+    const { run, background } = this;
+    if (!background) return;
+    await new Promise((resolve) => setTimeout(resolve, ASKED));
+    if (run !== this.run) return;
+    const given = structuredClone(this.given);
     try {
-      this.ghost = new LiveRun(this.core, { ...this.given, start });
-    } catch {
-      this.ghost = null;
+      if (run.until === null) {
+        run.until = await background.ask("horizon", given, { limit: data.limit });
+        if (run !== this.run) return;
+        this.curves.choose();
+        this.draw();
+      }
+      if (byId("neighbours").checked && !this.neighbours) {
+        byId("rate").textContent = "computing a thousand neighbours";
+        const found = await background.ask("neighbours", given, NEIGHBOURS);
+        byId("rate").textContent = "";
+        if (run !== this.run) return;
+        this.neighbours = found;
+        this.draw();
+      }
+    } catch (error) {
+      if (run === this.run) this.unknown = `how far it is right is not known: ${error.message}`;
     }
   }
 
-  /** What takes longer than a frame comes later; an answer to an older question is dropped. */
-  #ask() {
-    if (!this.background) return;
-    clearTimeout(this.later);
-    const asked = ++this.question;
-    const isStale = () => asked !== this.question;
-    this.later = setTimeout(async () => {
-      const given = structuredClone(this.given);
-      try {
-        if (this.validUntil === null) {
-          const until = await this.background.ask("horizon", given, { limit: data.limit });
-          if (isStale()) return;
-          this.validUntil = until;
-          this.curves.until = until;
-          this.curves.choose();
-          this.draw();
-        }
-        if (byId("neighbours").checked && !this.neighbours) {
-          byId("rate").textContent = "computing a thousand neighbours";
-          const found = await this.background.ask("neighbours", given, NEIGHBOURS);
-          if (isStale()) return;
-          this.neighbours = found;
-          byId("rate").textContent = "";
-          this.draw();
-        }
-      } catch (error) {
-        if (!isStale()) this.unknown = `how far it is right is not known: ${error.message}`;
-      }
-    }, 150);
+  /** The words of the badge, for what is shown now, and the colour of its dot. */
+  #trust() {
+    const { run, t } = this;
+    if (this.isRefused) return ["the picture is that of the last run that was possible", "red"];
+    if (run.until === null) return [this.unknown, "quiet"];
+    if (run.isRight(run.end)) return [`right to ${data.limit} rad to the end`, "green"];
+    const until = `${run.until.toPrecision(4)} s`;
+    if (run.isRight(t)) return [`right to ${data.limit} rad until ${until}`, "ochre"];
+    return [`not right any more, since ${until}`, "red"];
   }
 
-  /** Says until when the run is right, in the words of what is shown now. */
-  trust() {
-    const until = this.validUntil;
-    const [kind, words] =
-      until === null
-        ? ["", this.unknown]
-        : this.#isRight(this.run.end) || Math.abs(until - this.run.end) < 1e-9 * Math.abs(until)
-          ? ["right", `right to ${data.limit} rad to the end`]
-          : this.#isRight(this.t)
-            ? ["until", `right to ${data.limit} rad until ${until.toPrecision(4)} s`]
-            : ["lost", `not right any more, since ${until.toPrecision(4)} s`];
-    this.#sayTrust(kind, words);
-  }
-
-  #sayTrust(kind, words) {
-    const told = byId("trust");
-    if (told.textContent === words) return;
-    told.className = `badge ${kind}`;
-    told.textContent = words;
-  }
-
-  #isRight(t) {
-    if (this.validUntil === null) return true;
-    return this.run.direction > 0 ? t <= this.validUntil * (1 + 1e-12) : t >= this.validUntil;
+  #sayTrust() {
+    const badge = byId("trust");
+    const [words, dot] = this.#trust();
+    if (badge.textContent === words) return; // else it would be read aloud again and again
+    badge.textContent = words;
+    badge.style.setProperty("--dot", `var(--${dot})`);
   }
 
   frame(now) {
@@ -335,8 +278,9 @@ class Page {
       this.changed();
     }
     if (this.isPlaying && !this.dragged) {
-      this.t = this.run.within(this.t + this.run.direction * passed * this.speed);
-      if (this.t === this.run.end) this.play(false);
+      const { run } = this;
+      this.t = run.within(this.t + run.direction * passed * Number(byId("speed").value));
+      if (this.t === run.end) this.play(false);
       this.draw();
     }
     requestAnimationFrame((later) => this.frame(later));
@@ -344,24 +288,23 @@ class Page {
 
   draw() {
     const { run, t, ghost, other } = this;
+    const state = run.state(t);
     this.view.draw({
       ...this.#shown(run, t),
-      ghost: ghost && ghost.places(ghost.within(t), ghost.state(t)),
+      ghost: ghost?.places(ghost.within(t), ghost.state(t)),
       neighbours: byId("neighbours").checked ? this.neighbours : null,
     });
     if (other) {
       Object.assign(this.otherView, { zoom: this.view.zoom, shift: this.view.shift });
       this.otherView.draw(this.#shown(other, other.within(t)));
     }
-    const state = run.state(t);
-    if (!this.isRefused) this.trust();
-    const past = this.#isRight(run.end) ? null : this.validUntil;
-    this.curves.draw(t, state, past);
+    this.#sayTrust();
+    this.curves.draw(t, state);
+    this.cost.draw();
     byId("clock").textContent = `${t.toFixed(2)} s`;
     byId("time").value = String(t);
-    const angles = Array.from(
-      { length: run.n },
-      (_x, i) => `q${i + 1} ${((state[i] * 180) / Math.PI).toFixed(1)} degrees`,
+    const angles = run.lengths.map(
+      (_length, i) => `q${i + 1} ${((state[i] * 180) / Math.PI).toFixed(1)} degrees`,
     );
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
@@ -374,8 +317,7 @@ class Page {
       places,
       t,
       lengths: run.lengths,
-      isLost: !this.#isRight(t),
-      pivot: [places[0], places[1]],
+      isLost: !this.run.isRight(t),
       forces: byId("reactions").checked ? run.reactions(t, state) : null,
       path: byId("trace").checked ? this.#path(t, run) : null,
     };
@@ -383,7 +325,9 @@ class Page {
 
   #path(t, run) {
     const since = run.within(t - run.direction * TRACE);
-    const times = grid(since, t, this.traceParts);
+    const { least, most, angle } = TRACE_PARTS;
+    const parts = clamp((TRACE * this.curves.fastest) / angle, least, most);
+    const times = grid(since, t, Math.ceil(parts));
     return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
   }
 
@@ -402,35 +346,23 @@ class Page {
   }
 
   #listen() {
-    byId("play").addEventListener("click", () => this.play(!this.isPlaying));
-    byId("back").addEventListener("click", () => this.go(this.t - STEP));
-    byId("forth").addEventListener("click", () => this.go(this.t + STEP));
-    byId("time").addEventListener("input", () => this.go(Number(byId("time").value)));
-    byId("speed").addEventListener("change", () => {
-      this.speed = Number(byId("speed").value);
-    });
-    for (const id of ["trace", "reactions"]) byId(id).addEventListener("change", () => this.draw());
-    byId("ghost").addEventListener("change", () => {
-      this.#ghost();
+    const on = (id, event, act) => byId(id).addEventListener(event, act);
+    on("play", "click", () => this.play(!this.isPlaying));
+    on("back", "click", () => this.go(this.t - STEP));
+    on("forth", "click", () => this.go(this.t + STEP));
+    on("time", "input", () => this.go(Number(byId("time").value)));
+    on("options", "change", () => this.showBeside());
+    on("measure", "click", () => this.#measure());
+    on("quantities", "change", () => {
+      this.curves.choose();
       this.draw();
     });
-    byId("neighbours").addEventListener("change", () => this.#ask());
-    byId("compare").addEventListener("change", () => {
-      this.#compare();
-      this.draw();
-    });
-    byId("measure").addEventListener("click", () => this.#measure());
     this.#tabs();
     listenToKeys(byId("scene"), this);
     listenToPointer(byId("scene"), this);
-    listenToView(byId("scene"), this);
-    for (const menu of this.curves.menus)
-      menu.addEventListener("change", () => {
-        this.curves.choose();
-        this.draw();
-      });
+    listenToWheel(byId("scene"), this);
     const copy = (id, text) =>
-      byId(id).addEventListener("click", () => {
+      on(id, "click", () => {
         this.copied = text();
         copyAndSay(byId(id), this.copied);
       });
@@ -440,44 +372,35 @@ class Page {
     copy("copy-toml", () => toToml(this.given));
     copy("copy-python", () => toPython(this.given, data.kinds));
     window.addEventListener("resize", () => this.draw());
+    window.addEventListener("hashchange", () => this.follow());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
-    window.addEventListener("hashchange", () => {
-      const given = this.#fromAddress();
-      this.#sayRefusal();
-      if (!given || writeCase(given) === writeCase(this.given)) return;
-      this.given = given;
-      this.changed();
-      this.showFields();
-    });
   }
 
   #tabs() {
-    const tabs = ["curves", "setup", "accuracy"];
-    const show = (chosen) => {
-      for (const name of tabs) {
-        byId(name).hidden = name !== chosen;
-        byId(`tab-${name}`).setAttribute("aria-selected", String(name === chosen));
+    const tabs = [...document.querySelectorAll("[role=tab]")];
+    const choose = (chosen) => {
+      for (const tab of tabs) {
+        tab.setAttribute("aria-selected", String(tab === chosen));
+        byId(tab.getAttribute("aria-controls")).hidden = tab !== chosen;
       }
       this.draw();
-      this.cost.draw();
     };
-    for (const name of tabs) byId(`tab-${name}`).addEventListener("click", () => show(name));
+    for (const tab of tabs) tab.addEventListener("click", () => choose(tab));
   }
 
   async #measure() {
+    const { run, background, cost } = this;
     const told = byId("measured");
-    const question = this.question;
     told.textContent = "measuring";
     byId("measure").disabled = true;
-    const draw = (points) => drawCost(this.cost, points);
-    this.background.progress = (points) => question === this.question && draw(points);
+    background.progress = (points) => run === this.run && drawCost(cost, points);
     try {
       const methods = data.methods.filter((name) => name !== "auto" && !name.includes("-"));
-      const points = await this.background.ask("cost", structuredClone(this.given), { methods });
-      if (question !== this.question) throw new Error("the scene has changed since");
-      draw(points);
+      const points = await background.ask("cost", structuredClone(this.given), { methods });
+      if (run !== this.run) throw new Error("the scene has changed since");
+      drawCost(cost, points);
       this.measured = points;
-      const beyond = this.#isRight(this.run.end)
+      const beyond = run.isRight(run.end)
         ? ""
         : "; past the time until which it is right, no tolerance helps";
       told.textContent = `${points.length} runs; errors against the tightest run${beyond}`;
@@ -490,16 +413,10 @@ class Page {
 
 async function begin() {
   const bytes = await coreBytes();
-  const core = bytes && data.can_run ? await load(bytes.slice(0)) : null;
+  const core = bytes && (await load(bytes.slice(0)));
   const page = new Page(core, bytes);
   /** @type {any} */ (window).pendcorePage = page;
-  const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-  byId("speed").value = "1"; // some browsers remember what was chosen before
-  page.play(!isStill);
+  page.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
 }
 
-begin().catch((error) => {
-  const message = byId("message");
-  message.textContent = `This page cannot run here: ${error.message}`;
-  message.hidden = false;
-});
+begin().catch((error) => say(`This page cannot run here: ${error.message}`));

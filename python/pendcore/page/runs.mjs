@@ -13,6 +13,9 @@ export async function coreBytes() {
 
 /** What the page plays: a run from `begin` to `end`, which may be before it. */
 class Played {
+  /** Until when it is right, s; null as long as that is not known. */
+  until = null;
+
   constructor(given, begin, end, { message, success }) {
     this.begin = begin;
     this.end = end;
@@ -22,10 +25,22 @@ class Played {
     this.n = this.lengths.length;
     this.direction = end >= begin ? 1 : -1;
   }
+  isRight(t) {
+    const rounding = 1e-9 * Math.abs(this.end - this.begin);
+    return this.until === null || this.direction * (t - this.until) <= rounding;
+  }
 }
 
-/** A run that the core has made, as the page plays it. */
+/** The sizes of the forces at the joints of a run, N. */
+export function forceSizes(run, t, state) {
+  const found = run.reactions(t, state);
+  return run.lengths.map((_length, i) => Math.hypot(found[2 * i], found[2 * i + 1]));
+}
+
+/** A run that the core has made: it has a state at any time. */
 export class LiveRun extends Played {
+  isLive = true;
+
   constructor(core, given) {
     // The ledger changes no bit of the motion.
     const { scene, run } = simulateDense(core, given, { ledger: true });
@@ -33,60 +48,57 @@ export class LiveRun extends Played {
     this.scene = scene;
     this.run = run;
     this.accounts = run.accounts;
-    this.count = Infinity; // it has a state at any time
     this.steps = run.t;
   }
   free() {
     this.run.free();
     this.scene.free();
   }
-  /** Angles and rates at a time. */
-  state(t) {
-    return this.run.at([this.within(t)]).subarray(0, 2 * this.n);
-  }
   within(t) {
     return clamp(t, Math.min(this.begin, this.end), Math.max(this.begin, this.end));
   }
-  /** The states at times, a row each. */
+  /** Angles and rates at a time. */
+  state(t) {
+    return this.states([t])[0].subarray(0, 2 * this.n);
+  }
+  /** Angles, rates and the entries of the ledger at times, a row each. */
   states(times) {
     const rows = this.run.at(times.map((t) => this.within(t)));
     const size = this.run.dimension;
-    return times.map((_t, k) => rows.subarray(k * size, k * size + 2 * this.n));
-  }
-  /** The entries of the ledger at times, J: a row for each of `accounts`. */
-  ledger(times) {
-    const rows = this.run.at(times.map((t) => this.within(t)));
-    const size = this.run.dimension;
-    return this.accounts.map((_name, i) => times.map((_t, k) => rows[k * size + 2 * this.n + i]));
+    return times.map((_t, k) => rows.subarray(k * size, (k + 1) * size));
   }
   places(t, state) {
     return this.scene.positions(t, state.subarray(0, this.n));
   }
   reactions(t, state) {
-    return this.scene.reactions(t, state.subarray(0, this.n), state.subarray(this.n));
+    return this.scene.reactions(t, ...this.#halves(state));
   }
   energies(t, state) {
-    return this.scene.energies(t, state.subarray(0, this.n), state.subarray(this.n));
+    return this.scene.energies(t, ...this.#halves(state));
+  }
+  #halves(state) {
+    return [state.subarray(0, this.n), state.subarray(this.n, 2 * this.n)];
   }
 }
 
 /** What Python has computed, at some times: for a page without the core, and for own functions. */
 export class Recording extends Played {
+  isLive = false;
+  accounts = [];
+
   constructor(recorded, given) {
     super(given, recorded.t[0], recorded.t.at(-1), recorded);
     this.recorded = recorded;
-    this.accounts = [];
-    this.count = recorded.t.length;
     this.steps = recorded.t;
   }
   free() {}
   #nearest(t) {
-    const last = this.count - 1;
+    const last = this.steps.length - 1;
     const share = (t - this.begin) / (this.end - this.begin || 1);
     return clamp(Math.round(share * last), 0, last);
   }
   within(t) {
-    return this.recorded.t[this.#nearest(t)];
+    return this.steps[this.#nearest(t)];
   }
   state(t) {
     return Float64Array.from(this.recorded.states[this.#nearest(t)]);
@@ -98,10 +110,7 @@ export class Recording extends Played {
     return Float64Array.from(this.recorded.places[this.#nearest(t)]);
   }
   reactions(t) {
-    return Float64Array.from(this.recorded.reactions[this.#nearest(t)]);
-  }
-  ledger() {
-    return [];
+    return this.recorded.reactions[this.#nearest(t)];
   }
   energies(t) {
     return this.recorded.energies[this.#nearest(t)];

@@ -5,15 +5,14 @@ import { clamp } from "./simulate.mjs";
 
 const MARGIN = 0.12; // of the total length
 const ARROW = { longest: 0.4, shortest: 0.14 }; // of the total length
+const MOST_NUMBERED = 8; // places of joints
 const ZOOMS = [0.1, 50];
-const CELL = 4; // pixels, of the picture of the neighbours' tips
-const MANY = 40; // neighbours in a cell, above which it is no darker
+const NEIGHBOUR = { size: 3, alpha: 0.45 }; // pixels; where many tips are, they are darker
 
 export class SceneView {
   constructor(canvas) {
     this.canvas = canvas;
     this.typicalForce = 0;
-    this.cloud = document.createElement("canvas");
     this.pixels = 1;
     this.center = [0, 0];
     this.fit();
@@ -49,13 +48,13 @@ export class SceneView {
     this.pixels = (this.zoom * Math.min(width, height)) / (2 * total * (1 + MARGIN));
     this.center = [width / 2 + this.shift[0], height / 2 + this.shift[1]];
     this.pen = pen;
+    pen.lineCap = pen.lineJoin = "round";
     this.#axes(width, height, total);
-    if (shown.neighbours) this.#neighbours(shown, width, height);
-    const last = shown.lengths.length - 1;
-    const lost = shown.isLost ? color("lost") : null;
-    if (shown.path) this.#line(shown.path, lost ?? linkColor(last), 1.6, 0.7);
+    if (shown.neighbours) this.#neighbours(shown);
+    const colorOf = (i) => color(shown.isLost ? "lost" : linkColor(i));
+    if (shown.path) this.#trace(shown.path, colorOf(shown.lengths.length - 1));
     if (shown.ghost) this.#chain(shown.ghost, () => color("quiet"), 0.6);
-    this.#chain(shown.places, (i) => lost ?? linkColor(i), 1);
+    this.#chain(shown.places, colorOf, 1);
     if (shown.forces) this.#arrows(shown.places, shown.forces, total);
   }
 
@@ -87,12 +86,11 @@ export class SceneView {
     pen.fillText(`${nice} m`, 12, height - 22);
   }
 
-  #line(points, stroke, lineWidth, alpha) {
+  #trace(points, stroke) {
     const { pen } = this;
-    pen.globalAlpha = alpha;
+    pen.globalAlpha = 0.7;
     pen.strokeStyle = stroke;
-    pen.lineWidth = lineWidth;
-    pen.lineJoin = "round";
+    pen.lineWidth = 1.6;
     drawLine(pen, ...this.#places(points));
     pen.globalAlpha = 1;
   }
@@ -101,7 +99,6 @@ export class SceneView {
     const { pen } = this;
     const places = this.#places(points);
     pen.globalAlpha = alpha;
-    pen.lineCap = "round";
     pen.lineWidth = 6;
     for (let i = 0; i + 1 < places.length; ++i) {
       pen.strokeStyle = colorOf(i);
@@ -109,7 +106,6 @@ export class SceneView {
     }
     pen.fillStyle = color("ink");
     for (const place of places) drawDisc(pen, place, 4.5);
-    pen.lineCap = "butt";
     pen.globalAlpha = 1;
   }
 
@@ -118,7 +114,6 @@ export class SceneView {
     const { pen, pixels } = this;
     const fill = color("force");
     const places = this.#places(points);
-    pen.font = FONT;
     pen.textAlign = "center";
     for (let k = 0; k + 1 < places.length; ++k) {
       const [fx, fy] = [forces[2 * k], forces[2 * k + 1]];
@@ -137,69 +132,35 @@ export class SceneView {
       pen.lineTo(ex - 5 * v, ey + 5 * u);
       pen.lineTo(ex + 5 * v, ey - 5 * u);
       pen.fill();
-      const [tx, ty] = clearPlace([ex, ey], [u, v], places);
+      if (places.length > MOST_NUMBERED) continue; // they would cover each other
+      // Most forces are along a link: the text is beside the head, on the side away from the link.
+      const [nx, ny] = places[k - 1] ?? places[k + 1];
+      const side = (ny - y) * u > (nx - x) * v ? -1 : 1;
+      const [tx, ty] = [ex - 36 * side * v, ey + 20 * side * u];
       drawText(pen, `${size.toPrecision(3)} N`, tx, ty + 4, fill);
     }
     pen.textAlign = "left";
   }
 
-  /** How many tips of neighbours are in each cell, as a cloud that is the darker the more. */
-  #neighbours({ neighbours, lengths, t, pivot }, width, height) {
+  /** The tips of the neighbours, as a cloud that is the darker the more of them are in a place. */
+  #neighbours({ neighbours, lengths, t, places }) {
+    const { pen } = this;
     const { angles, count, n, rate, begin } = neighbours;
     const steps = angles.length / (count * n);
     const frame = clamp(Math.round(Math.abs(t - begin) * rate), 0, steps - 1);
-    const [columns, rows] = [Math.ceil(width / CELL), Math.ceil(height / CELL)];
-    const found = new Uint16Array(columns * rows);
+    const { size, alpha } = NEIGHBOUR;
+    pen.fillStyle = color("teal");
+    pen.globalAlpha = alpha;
     for (let k = 0; k < count; ++k) {
-      let [x, y] = pivot;
+      let [x, y] = places; // of the pivot
       for (let i = 0; i < n; ++i) {
         const angle = angles[(frame * count + k) * n + i];
         x += lengths[i] * Math.cos(angle);
         y += lengths[i] * Math.sin(angle);
       }
-      const [i, j] = this.#at(x, y).map((one) => Math.floor(one / CELL));
-      if (i >= 0 && i < columns && j >= 0 && j < rows) found[j * columns + i] += 1;
+      const [left, top] = this.#at(x, y);
+      pen.fillRect(left - size / 2, top - size / 2, size, size);
     }
-    const { cloud } = this;
-    [cloud.width, cloud.height] = [columns, rows];
-    const pen = cloud.getContext("2d");
-    const pixels = pen.createImageData(columns, rows);
-    const [red, green, blue] = channels(color("teal"));
-    for (let k = 0; k < found.length; ++k) {
-      if (found[k] === 0) continue;
-      const shade = Math.min(Math.log1p(found[k]) / Math.log1p(MANY), 1);
-      pixels.data.set([red, green, blue, 255 * (0.4 + 0.6 * shade)], 4 * k);
-    }
-    pen.putImageData(pixels, 0, 0);
-    this.pen.drawImage(cloud, 0, 0, columns * CELL, rows * CELL);
+    pen.globalAlpha = 1;
   }
-}
-
-/** Red, green and blue of "#rrggbb". */
-function channels(hex) {
-  return [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16));
-}
-
-/** The place of a text at the head of an arrow that is farthest from the links, if one is near. */
-function clearPlace([x, y], [u, v], places) {
-  /** @type {[number, number][]} */
-  const spots = [
-    [x + 26 * u, y + 22 * v],
-    [x + 8 * u - 34 * v, y + 8 * v + 22 * u],
-    [x + 8 * u + 34 * v, y + 8 * v - 22 * u],
-  ];
-  const rooms = spots.map((spot) => distance(spot, places));
-  return spots[rooms[0] > 16 ? 0 : rooms.indexOf(Math.max(...rooms))];
-}
-
-/** How far a place is from the nearest link, pixels. */
-function distance([x, y], places) {
-  let least = Infinity;
-  for (let i = 0; i + 1 < places.length; ++i) {
-    const [[ax, ay], [bx, by]] = [places[i], places[i + 1]];
-    const [dx, dy] = [bx - ax, by - ay];
-    const share = clamp(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0, 1);
-    least = Math.min(least, Math.hypot(ax + share * dx - x, ay + share * dy - y));
-  }
-  return least;
 }

@@ -25,38 +25,21 @@ export function listenToKeys(canvas, page) {
   });
 }
 
-/** The wheel with Ctrl, or two fingers on a touchpad, look closer; a mouse moves the picture. */
-export function listenToView(canvas, page) {
-  const { view } = page;
-  let held = null; // where the mouse was, while it moves the picture
+/** The wheel with Ctrl, or two fingers on a touchpad, look closer; a double click shows it all. */
+export function listenToWheel(canvas, page) {
   canvas.addEventListener(
     "wheel",
     (event) => {
       if (!event.ctrlKey && !event.metaKey) return; // the page scrolls
       event.preventDefault();
-      view.enlarge(Math.exp(-CLOSER_A_PIXEL * event.deltaY), [event.offsetX, event.offsetY]);
+      const factor = Math.exp(-CLOSER_A_PIXEL * event.deltaY);
+      page.view.enlarge(factor, [event.offsetX, event.offsetY]);
       page.draw();
     },
     { passive: false },
   );
-  canvas.addEventListener("pointerdown", (event) => {
-    if (event.pointerType !== "mouse" || page.dragged) return;
-    canvas.setPointerCapture(event.pointerId);
-    held = [event.clientX, event.clientY];
-  });
-  canvas.addEventListener("pointermove", ({ clientX, clientY }) => {
-    if (!held) return;
-    view.move(clientX - held[0], clientY - held[1]);
-    held = [clientX, clientY];
-    page.draw();
-  });
-  for (const end of ["pointerup", "pointercancel"]) {
-    canvas.addEventListener(end, () => {
-      held = null;
-    });
-  }
   canvas.addEventListener("dblclick", () => {
-    view.fit();
+    page.view.fit();
     page.draw();
   });
 }
@@ -72,34 +55,48 @@ function jointNear(page, [x, y]) {
   return nearest;
 }
 
-/** Dragging a joint or the tip starts the run from the new pose, at rest. */
+/**
+ * Dragging a joint or the tip starts the run from the new pose, at rest; a mouse elsewhere moves
+ * the picture.
+ */
 export function listenToPointer(canvas, page) {
+  const { view } = page;
+  let held = null; // where the mouse was, while it moves the picture
   const place = ({ clientX, clientY }) => {
     const { left, top } = canvas.getBoundingClientRect();
-    return page.view.metres(clientX - left, clientY - top);
+    return view.metres(clientX - left, clientY - top);
   };
+  const nearest = (event) => (page.core ? jointNear(page, place(event)) : 0);
   canvas.addEventListener("pointerdown", (event) => {
-    if (!page.core) return;
-    const nearest = jointNear(page, place(event));
-    if (nearest === 0) return;
-    page.play(false);
+    const joint = nearest(event);
+    if (!joint && event.pointerType !== "mouse") return;
     canvas.setPointerCapture(event.pointerId);
+    if (!joint) {
+      held = [event.clientX, event.clientY];
+      return;
+    }
+    page.play(false);
+    page.dragged = joint;
     const { start } = page.given;
     start.q = [...page.run.state(page.t).subarray(0, page.run.n)];
     start.qd = start.qd.map(() => 0);
     page.t = page.run.begin;
-    page.dragged = nearest;
     page.changed();
   });
   // A finger that is not on a joint scrolls the page.
   canvas.addEventListener(
     "touchstart",
     (event) => {
-      if (page.core && jointNear(page, place(event.touches[0])) > 0) event.preventDefault();
+      if (nearest(event.touches[0])) event.preventDefault();
     },
     { passive: false },
   );
   canvas.addEventListener("pointermove", (event) => {
+    if (held) {
+      view.move(event.clientX - held[0], event.clientY - held[1]);
+      held = [event.clientX, event.clientY];
+      page.draw();
+    }
     if (!page.dragged) return;
     const { run, dragged, given } = page;
     const [x, y] = place(event);
@@ -112,6 +109,7 @@ export function listenToPointer(canvas, page) {
     page.isMoved = true;
   });
   const end = () => {
+    held = null;
     if (!page.dragged) return;
     page.dragged = 0;
     page.isMoved = false;

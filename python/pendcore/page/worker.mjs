@@ -22,39 +22,28 @@ function withRun(given, others, use) {
   }
 }
 
-/** One number, or one for each component. */
-function each(value, change) {
-  return Array.isArray(value) ? value.map(change) : change(value);
-}
-
 /** Until when a run is right to `limit` rad, by a run of another method at a hundredth of rtol. */
 function horizon(given, limit) {
   const begin = given.run.t_start ?? 0;
   const { step: _step, first_step: _first, ...run } = given.run;
   const moved = given.start.q.map((angle) => angle * (1 + 2 ** -51));
   const other = { ...given, run, start: { ...given.start, q: moved } };
-  const rtol = each(given.run.rtol ?? 1e-6, (one) => Math.max(one / 100, 3e-14));
+  const rtol = [given.run.rtol ?? 1e-6].flat().map((one) => Math.max(one / 100, 3e-14));
   const second = (method) => ({
     method: method === "radau5" ? "radau5" : method === "dop853" ? "taylor" : "dop853",
     rtol,
-    atol: each(rtol, (one) => one / 1000),
+    atol: rtol.map((one) => one / 1000),
   });
   return withRun(given, {}, (one) => {
     const compare = (another) => {
-      const lengths = [one.t_reached, another.t_reached].map((end) => end - begin);
-      const length = Math.abs(lengths[0]) < Math.abs(lengths[1]) ? lengths[0] : lengths[1];
-      const times = grid(begin, begin + length, 4000);
+      const lengths = [one.t_reached, another.t_reached].map((end) => Math.abs(end - begin));
+      const end = lengths[0] < lengths[1] ? one.t_reached : another.t_reached;
+      const times = grid(begin, end, 4000);
       const [a, b] = [one.at(times), another.at(times)];
-      const n = given.link.length;
-      const isWrong = (_t, k) => {
-        for (let i = 0; i < n; ++i) {
-          if (!(Math.abs(a[k * one.dimension + i] - b[k * another.dimension + i]) <= limit))
-            return true;
-        }
-        return false;
-      };
-      const past = times.findIndex(isWrong);
-      return past < 0 ? begin + length : times[Math.max(past - 1, 0)];
+      const isWrong = (k) => (_link, i) =>
+        !(Math.abs(a[k * one.dimension + i] - b[k * another.dimension + i]) <= limit);
+      const past = times.findIndex((_t, k) => given.link.some(isWrong(k)));
+      return past < 0 ? end : times[Math.max(past - 1, 0)];
     };
     try {
       return withRun(other, second(one.method), compare);
@@ -80,7 +69,7 @@ function neighbours(given, count, spread, rate) {
       const kept = rows.length / run.dimension;
       for (let j = 0; j < steps; ++j) {
         const row = Math.min(j, kept - 1) * run.dimension; // a run that ended stays where it is
-        for (let i = 0; i < n; ++i) angles[(j * count + k) * n + i] = rows[row + i];
+        angles.set(rows.subarray(row, row + n), (j * count + k) * n);
       }
     });
   }
