@@ -16,10 +16,11 @@ from contenders.contender import COMPILED, COMPILED_V3, PYTHON
 from equal_error import SIDES, Contender, Entrants, bar, compare, curve, envelope
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 from pendcore.plotting import LIGHT, grid, new_axes, sheet
 from record import Record
-from solve_tables import solves_of
+from solve_tables import case_name, solves_of
 
 plt.style.use(sheet())
 
@@ -78,8 +79,9 @@ def label_ends(axes: Axes, ends: Sequence[tuple[float, float, Program]]) -> None
     for error, time, program in sorted(ends, key=lambda end: end[1]):
         height = max([np.log10(time), *(one + room for one in taken[-1:])])
         taken.append(height)
-        how: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
-        axes.annotate(program.label, (error, 10**height), (7, 0), color=program.color, **how)
+        how: dict[str, Any] = {"textcoords": "offset points", "va": "bottom", "fontsize": 9}
+        how["path_effects"] = [withStroke(linewidth=3, foreground=LIGHT.ground)]
+        axes.annotate(program.label, (error, 10**height), (4, 1), color=program.color, **how)
 
 
 def draw_ratios(axes: Axes, who: Entrants, side: str) -> None:
@@ -116,7 +118,7 @@ def error_axis(axes: Axes, tightest: float, loosest: float = 0.1) -> None:
 
 def draw_solves(record: Record, path: Path) -> None:
     """Draw each program at its best, and best against best below."""
-    case, who = solves_of(record)
+    _, who = solves_of(record)
     four = new_axes((12.0, 8.0), 2, 2, new_figure=plt.figure, height_ratios=(3, 1))
     drawn: Any = four[0].figure
     panels = (four[:2], four[2:])
@@ -133,26 +135,21 @@ def draw_solves(record: Record, path: Path) -> None:
         for axes in (upper, lower):
             error_axis(axes, tightest, loosest=1.0)
     panels[0][0].set_ylabel("time of a run (\N{MICRO SIGN}s)")
-    panels[1][0].set_ylabel("share of the best other's time")
-    facts = record.cases[case]
-    words = case.replace("_", " ")
-    drawn.suptitle(
-        f"What accuracy costs: {words}, {facts['duration']:g} s kept at {facts['times']} times, "
-        "each program by its best method"
-    )
+    panels[1][0].set_ylabel("time / best other's")
+    drawn.suptitle(f"{case_name(record)}: what accuracy costs, each program by its best method")
     drawn.text(0.01, -0.02, circumstances(record), fontsize=8, color=LIGHT.quiet)
     save(drawn, path, 150, bbox_inches="tight")
 
 
-def panels_of(record: Record, height: float, what: str, error: str) -> tuple[Figure, Any]:
+def panels_of(record: Record, rows: int, what: str, error: str) -> tuple[Figure, Any]:
     """Make a panel for each case, with times up and errors across."""
-    count = len(record.cases)
-    panels = new_axes((4.4 * count, height), 1, count, new_figure=plt.figure)
+    columns = len(record.cases) // rows
+    panels = new_axes((10.0, 4.0 * rows), rows, columns, new_figure=plt.figure)
+    time = f"time of a {what} (\N{MICRO SIGN}s)"
     for panel, facts in zip(panels, record.cases.values(), strict=True):
         panel.sharey(panels[0])
-        panel.set(yscale="log", xlabel=error, title=facts["label"])
+        panel.set(yscale="log", xlabel=error, ylabel=time, title=facts["label"])
         panel.label_outer()
-    panels[0].set_ylabel(f"time of a {what} (\N{MICRO SIGN}s)")
     return panels[0].figure, panels
 
 
@@ -167,7 +164,7 @@ def legend_below(drawn: Figure, panels: Any, columns: int) -> None:
 
 def draw_stiff(record: Record, path: Path) -> None:
     """Draw a panel for each scene, with each program at its best."""
-    drawn, panels = panels_of(record, 4.6, "run", "largest position error / length")
+    drawn, panels = panels_of(record, 1, "run", "largest position error / length")
     for panel, case in zip(panels, record.cases, strict=True):
         present = [one for one in record.taking_part(case) if COMPILED_V3 not in one["sides"]]
         draw_programs(panel, present)
@@ -177,7 +174,7 @@ def draw_stiff(record: Record, path: Path) -> None:
 
 def draw_ensembles(record: Record, path: Path) -> None:
     """Draw pendcore's contenders as whole lines, others dashed."""
-    drawn, panels = panels_of(record, 5.0, "trajectory", "median position error / length")
+    drawn, panels = panels_of(record, 2, "trajectory", "median position error / length")
     for panel, case in zip(panels, record.cases, strict=True):
         for k, (name, facts) in enumerate(record.contenders.items()):
             points = envelope(curve({"points": record.points(name, case)}))

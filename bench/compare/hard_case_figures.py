@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from figures import plt, save
+from figures import save
 from hard_case_tables import PROGRAMS
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pendcore.plotting import LIGHT
+from pendcore.plotting import LIGHT, grid, new_axes
 from record import Point, Record
 
 # Colours differ in lightness, and dashes differ, so that the figures survive a grey printer.
@@ -35,20 +35,16 @@ def lines_of(record: Record, case: str) -> list[Line]:
     return found
 
 
-def sheet(*heights: float, tall: float, **how: Any) -> tuple[Figure, list[Axes]]:
-    figure, axes = plt.subplots(
-        len(heights), 1, figsize=(8.6, tall), layout="constrained", height_ratios=heights, **how
-    )
+def sheet(*heights: float, tall: float, sharex: bool = False) -> tuple[Figure, list[Axes]]:
+    axes = new_axes((8.6, tall), len(heights), height_ratios=heights, sharex=sharex)
     for each in axes:
-        each.grid(color=LIGHT.line, linewidth=0.6)
-        each.set_axisbelow(True)
-    return figure, list(axes)
+        grid(each)
+    return axes[0].get_figure(), axes
 
 
 def legend(figure: Figure, lines: list[Any]) -> None:
-    how: dict[str, Any] = {"ncols": 2, "frameon": False, "fontsize": 9}
     named = [line for line in lines if not str(line.get_label()).startswith("_")]
-    figure.legend(handles=named, loc="outside lower center", **how)
+    figure.legend(handles=named, loc="outside lower center", ncols=2)
 
 
 def held_rod(record: Record, case: str) -> Figure:
@@ -70,7 +66,7 @@ def held_rod(record: Record, case: str) -> Figure:
     axes.axvline(watched, color=LIGHT.quiet, linewidth=0.8)
     axes.annotate(" from here on MuJoCo's rate, times the time", (watched, 1e-10), fontsize=9)
     axes.set(yscale="log", ylim=(1e-11, 1e5), ylabel="moved (rad)")
-    axes.set_title("A rod at 30 degrees, held by friction of twice what it takes", fontsize=11)
+    axes.set_title("A rod at 30 degrees, held by friction of twice what it takes")
     zero.set(xscale="log", xlim=(t[0], t[-1]), ylim=(-1, 1), xlabel="t (s)")
     zero.set_yticks([0], ["exactly 0"])
     cut: dict[str, Any] = {"marker": [(-1, -0.6), (1, 0.6)], "markersize": 9, "linestyle": ""}
@@ -100,8 +96,8 @@ def two_joints(record: Record, case: str) -> Figure:
         ]
         sticks.broken_barh(rests, (-joint - 0.35, 0.7), color=LIGHT.lost)
     angles.set(ylabel="angle, from hanging (deg)", ylim=(-42, 42))
-    angles.legend(loc="upper left", frameon=False, fontsize=9)
-    angles.set_title("Two rods with dry friction in both joints under a slow motor", fontsize=11)
+    angles.legend(loc="upper left")
+    angles.set_title("Two rods with dry friction in both joints under a slow motor")
     sticks.set_yticks([-1, -2], ["joint 1 sticks", "joint 2 sticks"])
     sticks.set_ylim(-2.6, -0.4)
     sticks.tick_params(left=False)
@@ -135,7 +131,7 @@ def bounces(record: Record, case: str) -> Figure:
         logarithmic.plot(left, np.where(q > least, q, np.nan), label=label, **style)
     plain.set(xlabel="t (s)", ylabel="angle off the stop (rad)", ylim=(-0.03, 0.42))
     plain.margins(x=0)
-    plain.set_title("A rod pressed against a stop, restitution 0.8", fontsize=11)
+    plain.set_title("A rod pressed against a stop, restitution 0.8")
     logarithmic.set(xscale="log", yscale="log", xlim=(left[0], left[-1]), ylim=(least, 1))
     logarithmic.set_xlabel("time left until infinitely many bounces are over (s)")
     logarithmic.set_ylabel("angle off the stop (rad)")
@@ -153,13 +149,13 @@ def two_roots(record: Record, case: str) -> Figure:
     (amplitude,), (mark,), (gravity,) = (known[key] for key in ("amplitude", "mark", "gravity"))
     # So close to the turn the swing is as good as a parabola.
     fall = 0.75 * gravity * np.sin(amplitude) * (1e-3 * ms) ** 2
-    swing.plot(ms, 1e6 * (amplitude - mark - fall), "k")
+    swing.plot(ms, 1e6 * (amplitude - mark - fall), color=LIGHT.ink)
     swing.axhline(0.0, color=LIGHT.quiet, linestyle="--", linewidth=1.0)
     words: dict[str, Any] = {"textcoords": "offset points"}
     swing.annotate("the mark", (-close, 6), (4, 0), fontsize=9, **words)
     swing.set(xlabel="time from the tenth turn (ms)", ylabel="angle past the mark (µrad)")
     swing.margins(x=0)
-    swing.set_title("A swing that passes a mark 1.3 ms before and after it turns", fontsize=11)
+    swing.set_title("A swing that passes a mark 1.3 ms before and after it turns")
     for row, (one, label, style) in enumerate(lines):
         steps, found = one["trace"]["steps"], one["trace"]["found"]
         rows.axhline(-row, color=LIGHT.line, linewidth=0.8)
@@ -167,9 +163,10 @@ def two_roots(record: Record, case: str) -> Figure:
         rows.plot(found, np.full(len(found), -row), "o", color=style["color"], markersize=6)
         untold = ", steps not told" if label.startswith("Boost") else ""
         text = f"{label}: {len(found)} found{untold}"
-        rows.annotate(text, (-shown, -row), (4, 8), fontsize=8, va="center", **words)
+        rows.annotate(text, (-shown, -row), (4, 12), fontsize=8, va="center", **words)
     rows.set(xlim=(-shown, shown), ylim=(-len(lines) + 0.4, 0.7), yticks=[])
-    rows.set_xlabel("time from the tenth turn / ms; strokes: ends of steps, dots: passages found")
+    rows.grid(visible=False)
+    rows.set_xlabel("time from the tenth turn (ms). Strokes: ends of steps; dots: passages found")
     return figure
 
 

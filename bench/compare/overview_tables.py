@@ -11,13 +11,7 @@ from solve_tables import STIFF_ERRORS, solves_of
 from tables import NONE, WORDS, listed, number, power, short, table
 
 Records = Mapping[str, Record]
-NAMES = {
-    "textbook": "textbook, 5 s",
-    "textbook_long": "textbook, 60 s",
-    "high_energy": "high energy",
-    "damped_textbook": "damped",
-    "three_links": "three links",
-}
+NAMES = WORDS["names"]
 
 
 def known(records: Records) -> dict[str, list[Contender]]:
@@ -32,7 +26,7 @@ def span(errors: list[float]) -> str:
 
 
 def pages(records: Records) -> str:
-    return ", ".join(f"[{stem}]({stem}.md)" for stem in records)
+    return ", ".join(f"[{NAMES.get(stem, stem)}]({stem}.md)" for stem in records)
 
 
 def choice(records: Records) -> str:
@@ -151,7 +145,7 @@ def machines(records: Records) -> str:
     measured = ((stem, record.measured) for stem, record in records.items())
     return listed(
         sorted(
-            f"{stem}: {one['machine']['processor']}, {one['date']}, pendcore on "
+            f"{NAMES.get(stem, stem)}: {one['machine']['processor']}, {one['date']}, pendcore on "
             f"{one['machine']['instruction set of pendcore']}"
             for stem, one in measured
         )

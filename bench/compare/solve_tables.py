@@ -169,6 +169,10 @@ def case(record: Record) -> str:
     return solves_of(record)[0]
 
 
+def case_name(record: Record) -> str:
+    return str(WORDS["names"][case(record)])
+
+
 def about(record: Record) -> str:
     return str(WORDS["about"][case(record)])
 

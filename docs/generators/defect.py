@@ -11,7 +11,9 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
-from pendcore.plotting import LIGHT, grid, new_axes
+from pendcore.plotting import LIGHT, grid, legend_above, new_axes, sheet
+
+plt.style.use(sheet())
 
 RUNS = [
     ("dopri5", 1e-6, "-", LIGHT.lost),
@@ -46,7 +48,7 @@ def draw() -> plt.Figure:
     share = axes.secondary_yaxis("right", functions=(lambda x: x / weight, lambda x: x * weight))
     share.set_ylabel("share of m g L")
     grid(axes)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
+    legend_above(axes)
     return axes.figure
 
 

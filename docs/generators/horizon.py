@@ -246,11 +246,7 @@ def main() -> None:
     draw_run(FIGURES / "horizon_run.png")
     draw_trusted(found, FIGURES / "horizon_starts.png")
     draw_exponents(spectrum, FIGURES / "horizon_exponents.png")
-    from matplotlib.figure import Figure
-
-    sheet = Figure(figsize=(9.0, 4.2), layout="constrained")
-    work.plot(sheet)
-    sheet.savefig(FIGURES / "horizon_work.png", dpi=110)
+    work.plot().savefig(FIGURES / "horizon_work.png", dpi=110)
     print(table(found))
     late = [one for one in found["trusted"] if (np.array(one["valid"]) > one["right"]).any()]
     if late:

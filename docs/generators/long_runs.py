@@ -15,13 +15,13 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 from mpmath import cos, mp, mpf, sin
 from page_part import rewrite
-from pendcore.plotting import LIGHT, grid, new_axes
+from pendcore.plotting import LIGHT, grid, new_axes, sheet
 
 ROOT = Path(__file__).parents[2]
 BOOK = pc.Scene.textbook()
@@ -152,9 +152,8 @@ def tables(found: dict[str, Any]) -> str:
 
 def figure(found: dict[str, Any], path: Path) -> None:
     """Draw the drift of the textbook's case, and the growth of the rms over the starts."""
-    mpl.use("Agg")
-    axes = new_axes((9, 3.6), columns=2)
-    sheet: Any = axes[0].figure
+    plt.style.use(sheet())
+    axes = new_axes((9, 3.6), columns=2, new_figure=plt.figure)
     for name, color in (("rounded", LIGHT.ochre), ("compensated", LIGHT.blue)):
         one = found[name]
         times = np.linspace(0, one["drift"]["steps"] * STEP, len(one["drift"]["series"]))
@@ -170,7 +169,7 @@ def figure(found: dict[str, Any], path: Path) -> None:
     for part in axes:
         part.legend()
         grid(part)
-    sheet.savefig(path, dpi=110)
+    plt.savefig(path, dpi=110)
 
 
 def main() -> None:

@@ -20,6 +20,12 @@ import pendcore as pc
 from sphinx.application import Sphinx
 
 FILMS = Path("_static/gallery")
+GROUPS = {
+    "Order and chaos": "released_rods three_starts triple two_modes locked_elbow chain_of_100",
+    "Driven": "kapitza parametric clock trapeze golf_swing whip",
+    "Friction, contact and wind": "stick_slip with_and_without bouncing_rod bell in_the_wind",
+    "Held and controlled": "caught swing_up wrecking_ball",
+}
 
 
 class Scene(NamedTuple):
@@ -36,7 +42,9 @@ def write(examples: Path, folder: Path, site: Path) -> None:
     static = site / FILMS
     folder.mkdir(parents=True, exist_ok=True)
     static.mkdir(parents=True, exist_ok=True)
-    files = sorted(examples.glob("*.py"))
+    files = [examples / f"{name}.py" for names in GROUPS.values() for name in names.split()]
+    if set(files) != set(examples.glob("*.py")):
+        raise ValueError("each file of examples/gallery has to be in one of GROUPS")
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         list(workers.map(lambda file: _run(file, static), files))
     scenes = [_read(file) for file in files]
@@ -113,12 +121,20 @@ def _film(name: str, title: str) -> str:
 
 
 def _card(scene: Scene) -> str:
-    """Return the small film of a scene, with a picture until it plays."""
+    """Return the card of a scene: its small film, with a picture until it plays."""
     source = f"../{FILMS}/{scene.name}_card"
-    return (
-        f'<video class="film card-film" src="{source}.mp4" poster="{source}.jpg" muted loop '
-        f'playsinline preload="none" aria-label="{scene.title}"></video>'
-    )
+    return f""":::{{grid-item-card}} {scene.title}
+:link: {scene.name}
+:link-type: doc
+
+```{{raw}} html
+<video class="film card-film" src="{source}.mp4" poster="{source}.jpg" muted loop
+playsinline preload="none" aria-label="{scene.title}"></video>
+```
+
+{scene.about.partition(". ")[0].partition(": ")[0].rstrip(".")}.
+:::
+"""
 
 
 def _page(scene: Scene) -> str:
@@ -138,38 +154,20 @@ browser</a>: a page with the core inside.</p>
 ```python
 {scene.code}
 ```
+
+{{download}}`{scene.name}.py <../../examples/gallery/{scene.name}.py>`
 """
 
 
 def _index(scenes: list[Scene]) -> str:
-    cards = "\n".join(
-        f""":::{{grid-item-card}} {scene.title}
-:link: {scene.name}
-:link-type: doc
-
-```{{raw}} html
-{_card(scene)}
-```
-
-{scene.about.partition(". ")[0].partition(": ")[0].rstrip(".")}.
-:::
-"""
-        for scene in scenes
-    )
-    tree = "\n".join(scene.name for scene in scenes)
-    return f"""# Gallery
-
-Each scene is a dozen lines of Python, with its film and a page in which you can change it.
-
-::::{{grid}} 1 2 2 3
-:gutter: 3
-
-{cards}
-::::
-
-:::{{toctree}}
-:hidden:
-
-{tree}
-:::
-"""
+    cards = {scene.name: _card(scene) for scene in scenes}
+    parts = [
+        "# Gallery",
+        "Each is a dozen lines of Python, a film, and a page to change it in.",
+    ]
+    for title, names in GROUPS.items():
+        shown = "".join(cards[name] for name in names.split())
+        parts += [f"## {title}", f"::::{{grid}} 1 2 2 3\n:gutter: 3\n\n{shown}::::"]
+    tree = "\n".join(cards)
+    parts.append(f":::{{toctree}}\n:hidden:\n\n{tree}\n:::\n")
+    return "\n\n".join(parts)

@@ -2,7 +2,7 @@
 
 A link to an example leads to its page. A link to another file that is no page (a test, a header, a
 case) becomes a download. A link to a folder, or to a Markdown file outside docs/, becomes plain
-text. A README lists the pages of its folder for the site's navigation.
+text. A README lists the pages of its folder for the site's navigation, in its order.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
     source[0] = LINK.sub(replaced, source[0])
     if page.endswith("/README"):
-        source[0] += "\n\n:::{toctree}\n:hidden:\n:glob:\n\n*\n:::\n"
+        pages = "\n".join(dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", source[0])))
+        source[0] += f"\n\n:::{{toctree}}\n:hidden:\n\n{pages}\n:::\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Kapitza's pendulum.
 
-A pivot that is shaken fast holds a rod upside down (P. L. Kapitza, 1951).
+A pivot that is shaken fast holds a rod upside down (Kapitza, 1951).
 """
 
 from __future__ import annotations
