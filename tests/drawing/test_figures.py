@@ -7,6 +7,7 @@ import pendcore as pc
 import pytest
 from matplotlib.figure import Figure
 from pendcore.plotting import KINDS, LIGHT, save_figure
+from pendcore.plotting.curve import curve_of
 from pendcore.plotting.plot import plot
 from pendcore.plotting.poses import forces_on_links
 from runs_that_kept_little import axes
@@ -65,6 +66,7 @@ def test_the_energy_has_its_ledger_below(sol):
     lost = np.interp(t, *found["viscous (lost)"])
     assert total + lost == pytest.approx(np.full(len(t), total[0]), abs=0.05)
     assert found["kinetic"][1][0] == 0.0
+    assert len({line.get_color() for line in lines[:4]}) == 4
     bare = pc.simulate(damped, q0=0.5, t_span=(0, 5))
     assert len(bare.plot("energy", axes())) == 3
 
@@ -113,6 +115,15 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol):
     assert lines[1].get_xdata()[0] == sol.q[0, 1]
     assert lines[1].get_ydata()[-1] == sol.qd[-1, 1]
     assert lines[0].axes.get_xlabel() == "$q$ (rad)"
+    turning = pc.simulate(BOOK, (0, 3), np.pi / 2, 12.0)
+    assert np.ptp(turning.q[:, 0]) > 2 * np.pi
+    line = turning.plot("phase", axes(2))[0]
+    t, (angle, rate) = curve_of(turning).t, line.get_data()
+    assert np.isnan(angle).sum() == (np.diff((turning(t)[0] + np.pi / 2) // (2 * np.pi)) != 0).sum()
+    shown = ~np.isnan(angle)
+    assert np.sin(angle[shown]) == pytest.approx(np.sin(turning(t)[0][shown]), abs=1e-9)
+    assert rate[shown] == pytest.approx(turning(t)[2][shown])
+    assert -np.pi / 2 <= np.nanmin(angle) <= np.nanmax(angle) <= 3 * np.pi / 2
     apart = sol.plot("phase", axes(2), label="mine")
     assert [line.axes.get_xlabel() for line in apart] == ["$q_{1}$ (rad)", "$q_{2}$ (rad)"]
     assert [legend(line.axes) for line in apart] == [["mine"], ["mine"]]
@@ -123,7 +134,7 @@ def test_a_section_shows_the_states_at_an_event(sol):
     assert len(line.get_xdata()) == len(sol.events[0]) > 2
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
-    assert legend(line.axes) == ["a point at each\nLinkAngle(link=1, value=1.571)"]
+    assert legend(line.axes) == ["each time that $q_{1}$ passes 90 deg"]
 
 
 def test_a_section_without_events_says_how_to_look_for_them():
@@ -210,10 +221,12 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
             assert shade.get_x() == pytest.approx(until)
             assert shade.get_x() + shade.get_width() == pytest.approx(30)
         said = [text.get_text() for text in ax[0].get_legend().get_texts()]
-        assert f"not right to 0.1 rad after {until:.4g} s" in said
+        assert f"not right to 0.1 rad\nafter {until:.4g} s" in said
     for what in ("path", "phase"):
         line = chaotic.plot(what, axes(), horizon=0.1)[0]
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())
+    lines = chaotic.plot("path", axes(), horizon=0.1)[0].axes.lines
+    assert [x.get_color() for x in lines if x.get_marker() == "o"] == [LIGHT.lost] * 2
     right = pc.simulate(BOOK, q0=[1.0, 1.0], t_span=(0, 1)).plot(ax=axes(2), horizon=0.1)
     assert not right[0].axes.patches
 

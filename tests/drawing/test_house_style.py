@@ -140,20 +140,42 @@ def written(monkeypatch):
     return found
 
 
+def require_in(figure, written):
+    """Raise an AssertionError if a text is cut off."""
+    for text, box in written.items():
+        assert (box.min >= -0.5).all(), text
+        assert (box.max <= figure.bbox.max + 0.5).all(), text
+
+
+@pytest.mark.parametrize("y", ["time", "nfev"])
+def test_no_text_of_what_accuracy_costs_is_cut_off(y, written):
+    cost = pc.accuracy_cost(RUN.scene, (0, 1), 0.8, repeats=1, rtol=[1e-3, 1e-6])
+    figure = cost.plot(y=y)[0].axes.figure
+    for size in (4.0, 3.4), (7.6, 4.6), (11.0, 7.5):
+        figure.set_size_inches(*size)
+        figure.draw_without_rendering()
+        written.clear()
+        figure.canvas.draw()
+        assert len(written) > 8
+        require_in(figure, written)
+
+
 @pytest.mark.parametrize("size", [(4.0, 3.4), (6.4, 4.8), (12.0, 8.0)])
-@pytest.mark.parametrize("what", [*KINDS, "horizon"])
-def test_no_text_is_cut_off_or_lies_on_another_or_on_a_curve(what, size, written):
-    run, name, limit = (CHAOS, "angles", 0.1) if what == "horizon" else (RUN, what, None)
+@pytest.mark.parametrize(
+    ("what", "horizon"),
+    [*((kind, None) for kind in KINDS), ("angles", 0.1), ("energy", 0.1), ("path", 0.1),
+     ("phase", 0.1), ("reactions", 0.1)],
+)  # fmt: skip
+def test_no_text_is_cut_off_or_lies_on_another_or_on_a_curve(what, horizon, size, written):
+    run = CHAOS if horizon else RUN
     ax = plt.figure(figsize=size).subplots() if what == "free_bodies" else None
-    figure = run.plot(name, ax, horizon=limit)[0].axes.figure
+    figure = run.plot(what, ax, horizon=horizon)[0].axes.figure
     figure.set_size_inches(*size)
     figure.draw_without_rendering()
     written.clear()
     figure.canvas.draw()
     assert len(written) > 5
-    for text, box in written.items():
-        assert (box.min >= -0.5).all(), text
-        assert (box.max <= figure.bbox.max + 0.5).all(), text
+    require_in(figure, written)
     inner = {text: box.padded(-1) for text, box in written.items()}
     for (text, box), (other, there) in combinations(inner.items(), 2):
         assert not box.overlaps(there), (text, other)

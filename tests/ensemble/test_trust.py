@@ -167,15 +167,15 @@ def test_a_map_is_refined_where_neighbours_differ():
 def test_a_figure_of_two_axes_is_an_image_with_names_and_units():
     found = pc.ensemble(BOOK, q0=plane(6), t_span=(0, 10), **FIRST)
     image, *_ = found.plot()
-    assert image.axes.get_xlabel() == "q0[1] (rad)"
-    assert image.axes.get_ylabel() == "q0[2] (rad)"
+    assert image.axes.get_xlabel() == "$q_{1}(0)$ (rad)"
+    assert image.axes.get_ylabel() == "$q_{2}(0)$ (rad)"
     assert image.colorbar.ax.get_ylabel() == "first event (s)"
     shown = image.get_array().filled(np.nan)
     assert np.array_equal(shown, found["first_event"].T, equal_nan=True)
     mask = found.resolved()
     mask[2, 3] = False
     image, unresolved = found.plot("qd[2]", resolved=mask)
-    assert image.colorbar.ax.get_ylabel() == "qd[2] at the end (rad/s)"
+    assert image.colorbar.ax.get_ylabel() == r"$\dot q_{2}$ at the end (rad/s)"
     assert np.array_equal(np.ma.getmaskarray(unresolved.get_array()), mask.T)
     plt.close("all")
 
@@ -193,7 +193,7 @@ def test_a_figure_of_one_axis_is_a_line():
     [line] = pc.ensemble(BOOK, q0=[[1.0, 0.5], [0.5, 0.5], [0.2, 0.5]], t_span=(0, 0.1)).plot(
         "q[1]"
     )
-    assert line.axes.get_xlabel() == "q0[1] (rad)"
+    assert line.axes.get_xlabel() == "$q_{1}(0)$ (rad)"
     assert line.get_xdata().tolist() == [1.0, 0.5, 0.2]  # decreasing starts name an axis too
     times = pc.ensemble(BOOK, q0=[[1.0, 0.5]] * 2, t_span=(0, 1), keep="times", t_eval=[0.5, 1.0])
     several = "keeps states at several times, which are not one"

@@ -290,9 +290,20 @@ def test_sliders_have_the_size_of_a_small_rig(opened):
     assert sliders["length"] == (1e-3, 0.3, 1e-3)
     assert sliders["damping"] == (-6e-5, 6e-5, 1e-7)  # some joints feed the motion
     assert sliders["coulomb"] == (0, 3e-4, 1e-6)
-    assert sliders["stribeck_velocity"][0] == sliders["stribeck_velocity"][2] > 0
+    assert sliders["stribeck velocity"][0] == sliders["stribeck velocity"][2] > 0
+    assert "joint" not in sliders  # there is one joint
     assert sliders["restitution"] == (0, 1, 1e-3)
     assert sliders["range"] == (-3.15, 3.15, 0.01)  # -pi/3 and three times as much: no odd digits
+
+
+def test_labels_are_words_with_the_unit_of_what_is_driven(opened):
+    turn = pc.effects.Sinusoid(amplitude=0.2, angular_frequency=6.0)
+    driven = [pc.effects.Motor(joint=1, sinusoid=turn), pc.effects.DrivenPivot(y=turn)]
+    page = opened(pc.simulate(pc.Scene.textbook().replace(effects=driven), q0=0.5, t_span=(0, 1)))
+    labels = page.ask("[...document.querySelectorAll('#setup label')].map((x) => x.textContent)")
+    assert [x for x in labels if x.startswith("amplitude")] == ["amplitude (N m)", "amplitude (m)"]
+    assert labels.count("angular frequency (rad/s)") == 2
+    assert not [x for x in labels if "_" in x]
 
 
 def test_the_trace_of_a_fast_link_is_round(opened):

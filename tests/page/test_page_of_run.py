@@ -186,11 +186,33 @@ def test_work_and_loss_have_a_chart_of_their_own_where_there_are_some(page, sol,
     assert page.ask(names.format("work")) == ["viscous (lost)"]
     last = "pendcorePage.curves.{}.curves.at(-1).y.at(-1)"
     total, lost = (page.ask(last.format(chart)) for chart in ("energy", "work"))
-    assert total + lost == pytest.approx(sol.energy().total[0], abs=1e-6)
+    at_start, hanging = sol.energy().total[0], sol.scene.energy(0.0, [np.pi / 2] * 2, [0, 0])[1]
+    assert total + lost == pytest.approx(at_start - hanging, abs=1e-6)
     hidden = "document.getElementById('work').hidden"
     assert page.ask(hidden) is False
     free = opened(pc.simulate(pc.Scene.textbook(), q0=0.5, t_span=(0, 1)))
     assert free.ask(hidden) is True
+
+
+def test_the_energies_of_a_small_swing_are_not_flat_lines(opened):
+    rod = pc.Scene(links=[pc.Link(mass=0.5, length=1.0)])
+    page = opened(pc.simulate(rod, q0=[np.pi / 2 - 0.01], t_span=(0, 4)))
+    potential, total = page.ask("pendcorePage.curves.energy.curves.slice(1).map((one) => one.y)")
+    assert min(potential) == pytest.approx(0.0, abs=1e-3 * max(potential))
+    assert max(potential) == pytest.approx(total[0])
+    assert page.text("energy").startswith("energy above hanging at rest (J)")
+
+
+@pytest.mark.parametrize(("size", "is_beside"), [("desktop", True), ("phone", False)])
+def test_the_angles_stay_beside_the_sliders_where_there_is_room(page, sized, size, is_beside):
+    sized(size)
+    canvas = "document.querySelector('#angles canvas')"
+    assert page.ask(f"{canvas}.offsetHeight") > 0
+    page.click("tab-setup")
+    assert (page.ask(f"{canvas}.offsetHeight") > 0) is is_beside
+    page.do("document.querySelector('#setup').lastChild.scrollIntoView()")
+    place = page.ask(f"(({{ top, bottom }}) => [top, bottom])({canvas}.getBoundingClientRect())")
+    assert (0 <= place[0] < place[1] <= page.ask("innerHeight")) is is_beside
 
 
 def test_what_accuracy_costs_is_measured(page):

@@ -29,6 +29,18 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, op
     assert "right to 0.1 rad to the end" in page.text("trust")
 
 
+def test_the_ledger_of_a_run_is_played_back_where_it_has_one(sol, opened, monkeypatch):
+    monkeypatch.setattr(html, "core_for_browsers", lambda: None)
+    damped = sol.scene.replace(effects=[pc.effects.ViscousJoint(joint=2, damping=0.05)])
+    kept = pc.simulate(damped, q0=[0.8, 1.0], t_span=(0, 8), ledger=True)
+    page = opened(kept)
+    (work,) = page.ask("pendcorePage.curves.work.curves")
+    assert work["name"] == "viscous (lost)"
+    assert work["y"][-1] == pytest.approx(kept.energy().ledger.viscous[-1], rel=1e-6)
+    assert len(page.ask("[...pendcorePage.run.state(2)]")) == 4
+    assert opened(sol).ask("document.getElementById('work').hidden") is True
+
+
 def test_the_command_that_wrote_a_page_without_the_core_says_so(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(html, "core_for_browsers", lambda: None)
     assert main(["show", "-o", str(tmp_path / "run.html")]) == 0

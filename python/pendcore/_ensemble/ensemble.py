@@ -374,7 +374,7 @@ class Ensemble:
         >>> found = pc.ensemble(pc.Scene.textbook(), (0, 5), q0)
         >>> [image] = found.plot("q[2]")
         >>> image.axes.get_xlabel()
-        'q0[1] (rad)'
+        '$q_{1}(0)$ (rad)'
         """
         from pendcore.plotting.map import plot
 

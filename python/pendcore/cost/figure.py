@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.point import Point
 from pendcore.cost.runs import line_style
-from pendcore.plotting import as_drawn, grid, one_axes, theme_of
+from pendcore.plotting import Theme, as_drawn, grid, legend_above, one_axes, theme_of
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
@@ -49,7 +50,8 @@ def plot(
                 color=line.get_color(), markersize=line.get_markersize() + 1.5, zorder=3,
             )  # fmt: skip
     _dress(axis, points, uncertainty, y, unit)
-    axis.set_title(as_drawn(title), fontsize=11)
+    title = as_drawn(f"What accuracy costs: {title}")
+    legend_above(axis, [*lines, *_others(theme, points, uncertainty, y)], title=title)
     return lines
 
 
@@ -59,20 +61,18 @@ def _unit(points: list[Point]) -> tuple[float, str]:
 
 
 def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: str) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
     from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
 
     theme = theme_of(ax)
     ax.set(xscale="log", yscale="log")
-    ax.set_xlabel("largest position error / total length (more accurate to the right)")
+    ax.set_xlabel("largest position error / total length\n(more accurate to the right)")
     counted = "right-hand sides"
     if any(p.method == "taylor" for p in points):
         counted += " (of taylor: expansions)"
     ax.set_ylabel(f"time of a run ({unit})" if y == "time" else counted)
     if not ax.xaxis_inverted():
         ax.invert_xaxis()
-    if is_known := uncertainty < inf:
+    if uncertainty < inf:
         left, right = ax.get_xlim()
         edge = max(uncertainty, 1e-17)
         right = min(right, edge / 3)
@@ -84,17 +84,20 @@ def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: 
         ax.yaxis.set_major_formatter(LogFormatter())
         ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
     grid(ax)
-    handles, _ = ax.get_legend_handles_labels()
-    unknown = Patch(color=theme.line, label="the reference is\nuncertain by this")
+
+
+def _others(theme: Theme, points: Sequence[Point], uncertainty: float, y: str) -> list[Artist]:
+    """Return what the legend names besides the methods that are drawn."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    named: list[Artist] = []
     if y == "time":
-        filled = "filled: no other is\nboth better and faster"
-        handles.append(Line2D([], [], ls="", marker="o", color=theme.ink, label=filled))
-    handles += [unknown] * is_known
+        named.append(Line2D([], [], ls="", marker="o", color=theme.ink, label="Pareto front"))
+    if uncertainty < inf:
+        named.append(Patch(color=theme.line, label="not resolved"))
     fine = {p.method for p in points if not p.failure}
     if failed := [m for m in dict.fromkeys(p.method for p in points) if m not in fine]:
         why = "too slow here, or failed:\n" + "\n".join(failed)
-        handles.append(Patch(color="none", label=why))
-    ax.legend(
-        handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False,
-        fontsize=9,
-    )  # fmt: skip
+        named.append(Patch(color="none", label=why))
+    return named

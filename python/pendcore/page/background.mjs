@@ -7,8 +7,7 @@ export class Background {
 
   constructor(bytes) {
     const scripts = ["core-js", "worker-js"].map((id) => document.getElementById(id).textContent);
-    const text = scripts.join("\n");
-    this.worker = new Worker(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
+    this.worker = new Worker(URL.createObjectURL(new Blob(scripts, { type: "text/javascript" })));
     this.worker.postMessage({ bytes: bytes.slice(0) });
     this.waiting = new Map();
     this.last = 0;

@@ -95,16 +95,10 @@ export class Chart {
     if (width === 0) return; // in a tab that is closed
     this.width = width - LEFT - RIGHT;
     this.height = height - TOP - BOTTOM;
-    const { still } = this;
-    const needed = [
-      this.canvas.width,
-      this.canvas.height,
-      shade,
-      color("ink"),
-      this.version,
-    ].join();
+    const { canvas, still, version } = this;
+    const needed = String([canvas.width, canvas.height, shade, color("ink"), version]);
     if (needed !== this.drawnFor) {
-      [still.width, still.height] = [this.canvas.width, this.canvas.height];
+      [still.width, still.height] = [canvas.width, canvas.height];
       const quiet = still.getContext("2d");
       quiet.setTransform(pen.getTransform());
       this.#drawStill(quiet, shade);

@@ -176,20 +176,22 @@ export class Controls {
     ]);
   }
 
-  /** Fields for the numbers among parameters, for those of a pair and of a part, too. */
-  #parameters(values, parameters) {
+  /** Fields for the numbers among parameters; those of a part drive what has the unit `driven`. */
+  #parameters(values, parameters, driven = "") {
     return parameters.flatMap(({ name, unit, range, type, components }) => {
       const value = values[name];
       const part = this.kinds.find((one) => one.name === type);
-      if (part && value) return this.#parameters(value, part.parameters);
+      if (part && value) return this.#parameters(value, part.parameters, unit);
+      const own = unit.includes(" or ") ? driven : unit;
       const fieldOf = (label, row, key, more) => {
-        if (!Number.isFinite(row[key])) return [];
         const ends = more.whole ? [1, this.given.link.length] : interval(row[key], range);
-        return [this.#field(label, unit, row[key], ends, (x) => (row[key] = x), more)];
+        if (!Number.isFinite(row[key]) || ends[0] === ends[1]) return [];
+        return [this.#field(label, own, row[key], ends, (x) => (row[key] = x), more)];
       };
+      const words = name.replaceAll("_", " ");
       if (type === "pair" && value)
-        return components.flatMap((one, k) => fieldOf(`${name}, ${one}`, value, k, {}));
-      return fieldOf(name, values, name, {
+        return components.flatMap((one, k) => fieldOf(`${words}, ${one}`, value, k, {}));
+      return fieldOf(words, values, name, {
         whole: type === "int",
         positive: />(?!=)/.test(range),
       });

@@ -66,7 +66,7 @@ export class Curves {
   constructor(byId) {
     this.angles = new Chart(byId("angles"), ["t (s)", "q (deg)"]);
     this.chosen = new Chart(byId("phase"), ["", ""]);
-    this.energy = new Chart(byId("energy"), ["t (s)", "energy (J)"]);
+    this.energy = new Chart(byId("energy"), ["t (s)", "energy above hanging at rest (J)"]);
     this.work = new Chart(byId("work"), ["t (s)", "work, loss (J)"]);
     this.menus = [byId("across"), byId("up")];
   }
@@ -80,8 +80,8 @@ export class Curves {
     const curve = (name, color, rows, of) => ({ name, color, x: times, y: rows.map(of) });
     this.energy.set([
       curve("kinetic", partColor(0), energies, ([T]) => T),
-      curve("potential", partColor(1), energies, ([, V]) => V),
-      curve("total", "ink", energies, ([T, V]) => T + V),
+      curve("potential", partColor(1), energies, ([, V]) => V - run.hanging),
+      curve("total", "ink", energies, ([T, V]) => T + V - run.hanging),
     ]);
     const booked = run.accounts.map((account, k) => {
       const name = account.replace(/^-(.*)/, "$1 (lost)");

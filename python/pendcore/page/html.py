@@ -205,14 +205,18 @@ def _recording(solution: Solution) -> dict[str, Any]:
     frames = abs(end - begin) * max(_FRAME_RATE, fastest / _FRAME_TURN)
     t = np.linspace(begin, end, round(min(max(frames, 2), _MOST_FRAMES)))
     moves = moves_of(solution, t)
-    q, qd = moves.states[:, :n], moves.states[:, n:]
-    kinetic, potential = solution.scene.energy(t, q, qd)
+    energy, down = solution.energy(t), np.full(n, np.pi / 2)
+    losses = energy.ledger.losses if energy.ledger else frozenset()
+    entries = dict(energy.ledger or {})
+    entries.pop("residual", None)
     return {
         "t": _rounded(t),
-        "states": _rounded(moves.states),
+        "states": _rounded(np.column_stack([moves.states, *entries.values()])),
+        "accounts": [f"-{name}" if name in losses else name for name in entries],
         "places": _rounded(moves.places.reshape(len(t), -1)),
         "reactions": _rounded(moves.reactions.reshape(len(t), -1)),
-        "energies": _rounded(np.stack([kinetic, potential], axis=1)),
+        "energies": _rounded(np.stack([energy.kinetic, energy.potential], axis=1)),
+        "hanging": float(solution.scene.energy(begin, down, np.zeros(n))[1]),
         "message": solution.message,
         "success": solution.success,
     }

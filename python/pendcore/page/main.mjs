@@ -73,7 +73,7 @@ class Page {
       document.body.classList.add("without-core");
     }
     this.rerun();
-    this.showFields();
+    this.controls?.show(this.given);
     this.follow();
     this.#listen();
     this.tell();
@@ -88,15 +88,11 @@ class Page {
       if (!given || writeCase(given) === writeCase(before)) return;
       this.given = given;
       this.rerun();
-      this.showFields();
+      this.controls.show(given);
     } catch (error) {
       this.given = before;
       say(`The address holds a run that is refused: ${error.message}`);
     }
-  }
-
-  showFields() {
-    this.controls?.show(this.given);
   }
 
   /**

@@ -49,6 +49,9 @@ export class LiveRun extends Played {
     this.run = run;
     this.accounts = run.accounts;
     this.steps = run.t;
+    const down = new Float64Array(2 * this.n).fill(Math.PI / 2, 0, this.n);
+    /** The energy of the chain hanging at rest at the start, J. */
+    this.hanging = this.energies(this.begin, down)[1];
   }
   free() {
     this.run.free();
@@ -84,12 +87,13 @@ export class LiveRun extends Played {
 /** What Python has computed, at some times: for a page without the core, and for own functions. */
 export class Recording extends Played {
   isLive = false;
-  accounts = [];
 
   constructor(recorded, given) {
     super(given, recorded.t[0], recorded.t.at(-1), recorded);
     this.recorded = recorded;
     this.steps = recorded.t;
+    this.accounts = recorded.accounts;
+    this.hanging = recorded.hanging;
   }
   free() {}
   #nearest(t) {
@@ -101,10 +105,10 @@ export class Recording extends Played {
     return this.steps[this.#nearest(t)];
   }
   state(t) {
-    return Float64Array.from(this.recorded.states[this.#nearest(t)]);
+    return this.states([t])[0].subarray(0, 2 * this.n);
   }
   states(times) {
-    return times.map((t) => this.state(t));
+    return times.map((t) => Float64Array.from(this.recorded.states[this.#nearest(t)]));
   }
   places(t) {
     return Float64Array.from(this.recorded.places[this.#nearest(t)]);

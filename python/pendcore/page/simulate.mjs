@@ -3,15 +3,11 @@
 /** Runs a case, with other options where they are given; who asks frees the run and its scene. */
 export function simulateCase(core, given, others = {}) {
   const { t_start, t_end, ...options } = { ...given.run, ...others };
-  const scene = core.scene({
-    links: given.link,
-    gravity: given.gravity,
-    effects: given.effect,
-  });
+  const { link: links, gravity, effect: effects } = given;
+  const scene = core.scene({ links, gravity, effects });
   try {
     const { q: q0, qd: qd0 } = given.start;
-    const run = scene.simulate({ q0, qd0, t0: t_start ?? 0, t_end, ...options });
-    return { scene, run };
+    return { scene, run: scene.simulate({ q0, qd0, t0: t_start ?? 0, t_end, ...options }) };
   } catch (error) {
     scene.free();
     throw error;

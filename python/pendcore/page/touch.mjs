@@ -115,7 +115,7 @@ export function listenToPointer(canvas, page) {
     page.isMoved = false;
     page.changed();
     page.settle();
-    page.showFields();
+    page.controls.show(page.given);
   };
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);

@@ -23,7 +23,7 @@ function withRun(given, others, use) {
 }
 
 /** Until when a run is right to `limit` rad, by a run of another method at a hundredth of rtol. */
-function horizon(given, limit) {
+function horizon({ given, limit }) {
   const begin = given.run.t_start ?? 0;
   const { step: _step, first_step: _first, ...run } = given.run;
   const moved = given.start.q.map((angle) => angle * (1 + 2 ** -51));
@@ -54,7 +54,7 @@ function horizon(given, limit) {
 }
 
 /** The angles of many runs that start beside this one, at equal steps of time. */
-function neighbours(given, count, spread, rate) {
+function neighbours({ given, count, spread, rate }) {
   const n = given.link.length;
   const begin = given.run.t_start ?? 0;
   const steps = Math.round(Math.abs(given.run.t_end - begin) * rate) + 1;
@@ -105,7 +105,7 @@ function measured(given, method, tolerance, times, truth) {
   return { method, tolerance, ms: least, error };
 }
 
-function cost(given, methods, tell) {
+function cost({ given, methods }, tell) {
   const begin = given.run.t_start ?? 0;
   const isStiff = withRun(given, {}, (run) => run.method === "radau5");
   const tightest = { method: isStiff ? "radau5" : "dop853", rtol: 3e-14, atol: 1e-16, step: null };
@@ -128,11 +128,7 @@ function cost(given, methods, tell) {
   return found;
 }
 
-const tasks = {
-  horizon: ({ given, limit }) => horizon(given, limit),
-  neighbours: ({ given, count, spread, rate }) => neighbours(given, count, spread, rate),
-  cost: ({ given, methods }, tell) => cost(given, methods, tell),
-};
+const tasks = { horizon, neighbours, cost };
 
 scope.onmessage = async ({ data }) => {
   try {

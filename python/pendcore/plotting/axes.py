@@ -35,16 +35,8 @@ def figure_of_pyplot(*args: Any, **named: Any) -> Figure:
 class Request:
     """What is asked of a figure; `pendcore.Solution.plot` says what ``ax`` to ``link`` mean.
 
-    Attributes
-    ----------
-    new_figure : callable
-        Makes the figure where no axes are given.
-    valid_until : float or None
-        s; what lies past it is shaded or pale.
-    horizon : float or None
-        rad, the error that is reached then.
-    properties : dict
-        Those of the lines.
+    What lies past ``valid_until``, s, is shaded or pale; the error reaches ``horizon``, rad, then.
+    The properties are those of the lines; ``new_figure`` is called where no axes are given.
     """
 
     solution: Solution
@@ -76,15 +68,21 @@ class Request:
         """Return what the legend calls a curve: with the solution's label, if that has one."""
         return curve if self.label is None else f"{curve}, {self.label}"
 
+    @property
+    def until(self) -> float:
+        """The time until which the run is right, s, as far as is known."""
+        return self.solution.t_reached if self.valid_until is None else self.valid_until
+
+    @property
+    def is_right_to_its_end(self) -> bool:
+        return self.until == self.solution.t_reached
+
     def shade(self, axes: Sequence[Axes]) -> None:
         """Shade the times past which nothing is right; the legend of the first axes says so."""
-        end = self.solution.t_reached
-        if self.valid_until in (None, end):
-            return
-        for k, axis in enumerate(axes):
-            colors = theme_of(axis)
-            how: dict[str, Any] = {"facecolor": colors.line, "alpha": 0.6, "zorder": 0}
-            axis.axvspan(self.valid_until, end, label="_" * k + self.after(), **how)
+        for k, axis in enumerate([] if self.is_right_to_its_end else axes):
+            how: dict[str, Any] = {"facecolor": theme_of(axis).line, "alpha": 0.6, "zorder": 0}
+            how["label"] = "_" * k + self.after()
+            axis.axvspan(self.until, self.solution.t_reached, **how)
 
     def right(self) -> str:
         """Return the words for what is right."""
@@ -92,7 +90,7 @@ class Request:
 
     def after(self) -> str:
         """Return the words for what lies past the time until which a run is right."""
-        return f"not {self.right()} after {self.valid_until:.4g} s"
+        return f"not {self.right()}\nafter {self.until:.4g} s"
 
 
 def new_axes(
@@ -117,15 +115,18 @@ def one_axes(ax: Any, size: tuple[float, float], new_figure: NewFigure = figure_
     return new_axes(size, new_figure=new_figure)[0] if ax is None else checked_axes(ax, (1,), "")[0]
 
 
-def legend_above(axis: Axes, handles: Sequence[Artist] | None = None, columns: int = 3) -> None:
+def legend_above(
+    axis: Axes, handles: Sequence[Artist] | None = None, columns: int = 3, title: str | None = None
+) -> None:
     """Name the curves, or the handles, above the axes, where no curve is, row by row."""
     handles = axis.get_legend_handles_labels()[0] if handles is None else handles
     for count in range(columns if handles else 0, 0, -1):
         by_rows = [handle for k in range(count) for handle in handles[k::count]]
-        legend = axis.legend(
-            handles=by_rows, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=count,
-            borderaxespad=0.2, borderpad=0.0, frameon=False, fontsize="small",
-        )  # fmt: skip
+        with applied():
+            legend = axis.legend(
+                handles=by_rows, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=count,
+                borderaxespad=0.2, borderpad=0.0, title=title, alignment="left",
+            )  # fmt: skip
         if legend.get_window_extent().width < 1.1 * axis.get_window_extent().width:
             return  # constrained layout will make the axes a little wider
 

@@ -20,17 +20,7 @@ IN_A_STEP = 4
 
 
 class Curve(NamedTuple):
-    """What a run was at k times.
-
-    Attributes
-    ----------
-    t : ndarray, (k,)
-        s.
-    q, qd : ndarray, (k, n)
-        Angles, rad, and rates, rad/s.
-    energy : callable
-        Returns the `pendcore.Energy` at these times.
-    """
+    """What a run was at k times (s): angles, rad, and rates, rad/s, (k, n), and the energy."""
 
     t: Floats
     q: Floats

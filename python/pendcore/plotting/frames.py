@@ -17,14 +17,8 @@ MOST_FRAMES = 54_000
 class Moves(NamedTuple):
     """What moves of one run, at the times of k frames.
 
-    Attributes
-    ----------
-    states : ndarray, (k, 2n)
-        Angles, rad, and rates, rad/s.
-    places : ndarray, (k, n+1, 2)
-        Pivot, joints and tip, m.
-    reactions : ndarray, (k, n, 2)
-        The force on each link at its joint, N.
+    Angles and rates, (k, 2n), rad and rad/s; the places of pivot, joints and tip, (k, n+1, 2), m;
+    the force on each link at its joint, (k, n, 2), N.
     """
 
     states: Floats

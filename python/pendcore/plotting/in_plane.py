@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pendcore.events import Event, LinkAngle
 from pendcore.messages import Floats, whole_number
 from pendcore.plotting.axes import Request, grid, legend_above, one_axes, point_style
 from pendcore.plotting.curve import curve_of
@@ -30,20 +30,22 @@ def draw_path(asked: Request) -> list[Artist]:
     theme, count = theme_of(axis), _count(axis)
     color = theme.run(count) if count else theme.link(q.shape[1] - 1)
     hidden = "_" * bool(count or asked.label)
-    for pose, shade, name in ((places[0], theme.lost, "start"), (places[-1], color, "end")):
+    is_right = abs(t[-1] - t[0]) <= abs(asked.until - t[0])
+    end = ("o-", color) if is_right else ("o:", theme.lost)
+    poses = (places[0], "start", "o-", theme.lost), (places[-1], "end", *end)
+    for pose, name, style, shade in poses:
         how: dict[str, Any] = {"color": shade, "label": f"{hidden}{name}", "zorder": 2.5}
-        axis.plot(*pose.T, "o-", linewidth=2.0, markersize=4, **how)
+        axis.plot(*pose.T, style, linewidth=2.0, markersize=4, **how)
     ours = {"color": color, "label": asked.label or f"{hidden}tip"}
     lines = _draw(axis, t, places[:, -1], asked, ours)
-    # New axes are as large as what is drawn; others show more of the plane.
-    axis.set_aspect("equal", adjustable="box" if asked.ax is None else "datalim")
+    axis.set_aspect("equal", adjustable="datalim")
     axis.yaxis.set_inverted(True)
     _name(axis, "x (m)", "y (m), downwards")
     return lines
 
 
 def draw_phase(asked: Request) -> list[Artist]:
-    """Draw the rate of each link (rad/s) over its angle (rad), each on its own axes or on one."""
+    """Draw the rate of each link (rad/s) over its angle (rad; full turns within one turn)."""
     t, q, qd, _ = curve_of(asked.solution)
     n = q.shape[1]
     axes = asked.several_axes((1, n), "one for each link", columns=3)
@@ -55,7 +57,12 @@ def draw_phase(asked: Request) -> list[Artist]:
         name = f"link {i + 1}"
         called = asked.label or f"_{name}" if is_apart else asked.name_of(name)
         ours = {"color": theme_of(axis).link(i), "linestyle": dashes, "label": called}
-        lines += _draw(axis, t, np.stack([q[:, i], qd[:, i]], axis=1), asked, ours)
+        points = np.stack([q[:, i], qd[:, i]], axis=1)
+        if np.ptp(q[:, i]) > 2 * np.pi:
+            points[:, 0] = _within_a_turn(q[:, i])
+            jumps = np.abs(np.diff(points[:, 0], prepend=points[0, 0])) > np.pi
+            points[jumps] = np.nan  # where the curve leaves on one side and enters on the other
+        lines += _draw(axis, t, points, asked, ours)
         _name(axis, f"$q{index}$ (rad)", rf"$\dot q{index}$ (rad/s)")
     return lines
 
@@ -70,19 +77,29 @@ def draw_section(asked: Request) -> list[Artist]:
         )
     event = _within("event", asked.event, 0, len(events) - 1)
     found, wanted = events[event], asked.solution.events_asked_for()[event]
-    angles = (found.q + np.pi) % (2 * np.pi) - np.pi
+    angles = _within_a_turn(found.q)
     usual = _moving(angles) if asked.link is None else asked.link
     link = _within("link", usual, 1, angles.shape[1])
     axis = one_axes(asked.ax, _SIZE, asked.new_figure)
-    in_few_digits = re.sub(r"\d+\.\d+", lambda number: f"{float(number[0]):.4g}", repr(wanted))
-    happened = as_drawn(f"a point at each\n{wanted.name or in_few_digits}")
-    size = 3.0 if len(found) > 50 else 6.0
-    ours: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": size}
-    ours |= {"color": theme_of(axis).link(link - 1), "label": asked.label or happened}
-    lines = axis.plot(angles[:, link - 1], found.qd[:, link - 1], **{**ours, **asked.properties})
-    axis.set_xlim(-np.pi, np.pi)
+    ours: dict[str, Any] = {"color": theme_of(axis).link(link - 1), "linestyle": "", "marker": "."}
+    ours |= {"markersize": 3.0 if len(found) > 50 else 6.0}
+    ours |= {"label": asked.label or _each_time(wanted), **asked.properties}
+    lines = axis.plot(angles[:, link - 1], found.qd[:, link - 1], **ours)
     _name(axis, f"$q_{{{link}}}$ (rad)", rf"$\dot q_{{{link}}}$ (rad/s)")
     return [*lines]
+
+
+def _each_time(event: Event) -> str:
+    """Say when an event happens, by its name if it has one."""
+    if event.name is None and isinstance(event, LinkAngle):
+        passes = ("falls past", "passes", "grows past")[event.direction + 1]
+        return f"each time that $q_{{{event.link}}}$ {passes} {np.rad2deg(event.value):.4g} deg"
+    return as_drawn(f"at each event: {event.name or event.kind.replace('_', ' ')}")
+
+
+def _within_a_turn(angles: Floats) -> Floats:
+    """Return angles, rad, from upright to upright: swings about hanging, pi/2, stay in one."""
+    return (angles + np.pi / 2) % (2 * np.pi) - np.pi / 2
 
 
 def _count(axis: Axes) -> int:
@@ -100,7 +117,7 @@ def _fitting(places: Floats) -> tuple[float, float]:
     """Return the size of a figure, inches, into which places (..., 2), m, fit to scale."""
     width, height = np.ptp(places.reshape(-1, 2), axis=0)
     across, down = _SIZE[0] - 0.8, float(np.clip(height / max(width, 1e-300), 0.3, 1.3))
-    return _SIZE[0], across * down + 0.9
+    return _SIZE[0], across * down + 1.1
 
 
 def _draw(
@@ -108,15 +125,13 @@ def _draw(
 ) -> list[Artist]:
     """Draw a curve (k, 2), pale where it is past the horizon; its name says until when."""
     how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
-    last = t[-1] if asked.valid_until is None else asked.valid_until
-    right = t <= last if t[-1] >= t[0] else t >= last
-    lines = axis.plot(*points[right].T, gid=_GID, **how)
-    if not right.all():
-        past = points[max(int(right.sum()) - 1, 0) :]
-        known = {line.get_label() for line in axis.lines}
-        said = asked.after()
+    count = int((np.abs(t - t[0]) <= abs(asked.until - t[0])).sum())
+    lines = axis.plot(*points[:count].T, gid=_GID, **how)
+    if count < len(t):
+        known = {line.get_label() for other in axis.figure.axes for line in other.lines}
+        said = "_" if asked.after() in known else asked.after()
         pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
-        axis.plot(*past.T, label="_" if said in known else said, **pale)
+        axis.plot(*points[max(count - 1, 0) :].T, label=said, **pale)
     return [*lines]
 
 

@@ -41,7 +41,15 @@ class Axis(NamedTuple):
 
     @classmethod
     def of(cls, name: str, unit: str, values: Floats) -> Axis:
+        name = in_symbols(name)
         return cls(f"{name} ({unit})" if unit else name, values)
+
+
+def in_symbols(name: str) -> str:
+    """Return the name of an angle or a rate, such as qd0[2], in LaTeX; others stay."""
+    kind, _, link = name.removesuffix("]").partition("[")
+    letter = {"q": "q", "qd": r"\dot q"}.get(kind.removesuffix("0"))
+    return f"${letter}_{{{link}}}{'(0)' * kind.endswith('0')}$" if letter and link else name
 
 
 def plot(
@@ -96,7 +104,7 @@ def shown_of(
     values: Floats, what: str, reducer: Reducer | None, other: Mask, why: str = "the run failed"
 ) -> Shown:
     """Return how values are shown; those that are missing where ``other`` is have a reason."""
-    name, unit = f"{what} at the end", "rad" if what.startswith("q[") else "rad/s"
+    name, unit = f"{in_symbols(what)} at the end", "rad" if what.startswith("q[") else "rad/s"
     is_log, usual, blank = False, "no value", ~np.isfinite(values)
     if reducer is not None:
         name, unit = as_drawn(what.replace("_", " ")), reducer.unit
@@ -129,6 +137,7 @@ def draw_map(
     axis: Any, x: Axis, y: Axis, shown: Shown, resolved: Mask | None, properties: dict[str, Any]
 ) -> list[Any]:
     """Draw values (n_x, n_y), and mark what is not resolved, and what has no value."""
+    from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
     theme = theme_of(axis)
@@ -136,8 +145,8 @@ def draw_map(
     if shown.is_log:
         values = np.ma.masked_where(~(values > 0), values)
         properties = {"norm": "log"} | properties
-    ours = {"shading": "nearest", "rasterized": True, "cmap": "viridis"}
-    image = axis.pcolormesh(x.values, y.values, values.T, **(ours | properties))
+    mesh: dict[str, Any] = {"shading": "nearest", "rasterized": True, "cmap": "viridis"}
+    image = axis.pcolormesh(x.values, y.values, values.T, **(mesh | properties))
     axis.set(xlabel=x.label, ylabel=y.label)
     axis.figure.colorbar(image, ax=axis, label=shown.label)
     grounds = zip(shown.blanks.items(), (theme.ground, theme.line, theme.quiet), strict=False)
@@ -147,20 +156,13 @@ def draw_map(
     drawn, patches = [image], []
     for name, mask, color in marks:
         if mask.any():
-            drawn.append(_mark(axis, x, y, mask, color))
+            pixels = np.ma.masked_where(~mask, np.ones(mask.shape))
+            how = mesh | {"cmap": ListedColormap([color])}
+            drawn.append(axis.pcolormesh(x.values, y.values, pixels.T, **how))
             share = f"{name}: {mask.mean():.2%}"
             patches.append(Patch(facecolor=color, edgecolor=theme.quiet, label=share))
     legend_above(axis, patches)
     return drawn
-
-
-def _mark(axis: Any, x: Axis, y: Axis, mask: Mask, color: str) -> Any:
-    """Fill the pixels of a mask (n_x, n_y) with a colour."""
-    from matplotlib.colors import ListedColormap
-
-    pixels = np.ma.masked_where(~mask, np.ones(mask.shape)).T
-    how = {"cmap": ListedColormap([color]), "shading": "nearest", "rasterized": True}
-    return axis.pcolormesh(x.values, y.values, pixels, **how)
 
 
 def _draw_curve(

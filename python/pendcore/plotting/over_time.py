@@ -49,7 +49,7 @@ def draw_reactions(asked: Request) -> list[Artist]:
     for i, force in enumerate(forces):
         x, y = force.T
         parts = {"x": x, "y, downwards": y, "$|F|$": np.hypot(x, y)}
-        panels[f"${force_name(i, i + 1)}$ (N)"] = in_colors(parts, theme, "$|F|$")
+        panels[f"${force_name(i, i + 1)}$ (N)"] = in_colors(parts, theme, ["$|F|$"])
     return draw_curves(asked, axes, t, panels)
 
 
@@ -60,20 +60,19 @@ def draw_energy(asked: Request) -> list[Artist]:
     """
     curve = curve_of(asked.solution)
     energy = curve.energy()
-    booked = {} if energy.ledger is None else dict(energy.ledger.items())
-    losses = () if energy.ledger is None else energy.ledger.losses
-    residual = booked.pop("residual", None)
-    count = 1 + bool(booked) + (residual is not None)
-    axes = asked.several_axes((1, count), "for the energies, the ledger and its residual")
-    theme = theme_of(axes[0])
-    energies = {"kinetic": energy.kinetic, "potential": energy.potential, "total": energy.total}
-    panels = {"energy (J)": in_colors(energies, theme, "total")}
-    if booked:
-        parts = {f"{x} (lost)" if x in losses else x: y for x, y in booked.items()}
-        panels["work, loss (J)"] = in_colors(parts, theme)
-    if residual is not None:
-        panels["residual (J)"] = {"residual": (residual, theme.ink)}
-    return draw_curves(asked, axes, curve.t, panels)
+    parts = {"kinetic": energy.kinetic, "potential": energy.potential, "total": energy.total}
+    panels = {"energy (J)": [*parts]}
+    if energy.ledger is not None:
+        losses = energy.ledger.losses
+        booked = {f"{x} (lost)" if x in losses else x: y for x, y in energy.ledger.items()}
+        works = [name for name in booked if name != "residual"]
+        panels |= {"work, loss (J)": works} if works else {}
+        panels["residual (J)"] = ["residual"]
+        parts |= booked
+    axes = asked.several_axes((1, len(panels)), "for the energies, the ledger and its residual")
+    curves = in_colors(parts, theme_of(axes[0]), ("total", "residual"))
+    shown = {label: {name: curves[name] for name in names} for label, names in panels.items()}
+    return draw_curves(asked, axes, curve.t, shown)
 
 
 def force_name(first: int, second: int) -> str:
@@ -82,10 +81,10 @@ def force_name(first: int, second: int) -> str:
     return f"F_{{{first}{comma}{second}}}"
 
 
-def in_colors(parts: dict[str, Floats], theme: Theme, total: str = "") -> Curves:
+def in_colors(parts: dict[str, Floats], theme: Theme, sums: Sequence[str]) -> Curves:
     """Return curves in the colours of parts, but in ink what they make up."""
     colors = cycle(theme.parts)
-    return {name: (x, theme.ink if name == total else next(colors)) for name, x in parts.items()}
+    return {name: (x, theme.ink if name in sums else next(colors)) for name, x in parts.items()}
 
 
 def _draw_links(

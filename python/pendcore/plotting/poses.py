@@ -57,8 +57,7 @@ def draw_strip(asked: Request) -> list[Artist]:
         axis.plot(*(path[since] + moved).T, alpha=0.6, zorder=1, **how)
         artists += _draw_chain(axis, pose + moved, asked.properties)
         x, y = moved + np.array([(low[0] + high[0]) / 2, high[1] - 0.3 * reach])
-        how = {"ha": "center", "va": "top", "fontsize": "small"}
-        artists.append(axis.text(x, y, f"{time:.4g} s", **how))
+        artists.append(axis.text(x, y, f"{time:.4g} s", ha="center", va="top", size="small"))
         before = time
     draw_scale(axis, low + np.array([0.1 * reach, tall - 0.2 * reach]), reach)
     axis.set_aspect("equal", adjustable="datalim")
@@ -72,10 +71,9 @@ def _draw_chain(axis: Axes, pose: Floats, properties: dict[str, Any]) -> list[Ar
     """Draw each link in its colour, with the joints as dots."""
     theme = theme_of(axis)
     lines: list[Artist] = []
+    ours: dict[str, Any] = {"linewidth": 2.4, "solid_capstyle": "round", "zorder": 2}
     for i, ends in enumerate(pairwise(pose)):
-        ours = {"color": theme.link(i), "linewidth": 2.4}
-        how = {**ours, "solid_capstyle": "round", "zorder": 2, **properties}
-        lines += axis.plot(*np.array(ends).T, **how)
+        lines += axis.plot(*np.array(ends).T, **{"color": theme.link(i), **ours, **properties})
     axis.plot(*pose.T, "o", color=theme.ink, markersize=min(3.0, 15 / len(pose)), zorder=3)
     return lines
 

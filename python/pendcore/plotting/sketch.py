@@ -34,7 +34,6 @@ class Sketch:
     size: float
     drawn: list[tuple[Floats, float]] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
-
     theme: Theme = field(init=False)
 
     def __post_init__(self) -> None:

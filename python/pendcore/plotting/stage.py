@@ -90,31 +90,16 @@ def _names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> t
 
 
 class _Run(NamedTuple):
-    """A run with dense output, its name, and where it is in each frame; arrows of forces are in m.
+    """A run with dense output, its name, and where it is in each frame, its arrows in m."""
 
-    It is right until a time, s.
-    """
-
-    solution: Solution
+    asked: Request
     name: str
-    until: float
     moves: Moves
     arrows: Floats
 
-    @property
-    def is_right_to_its_end(self) -> bool:
-        return self.until == self.solution.t_reached
-
 
 class Stage:
-    """A figure, and what has to be drawn anew in each of its frames.
-
-    Attributes
-    ----------
-    figure : Figure
-    times : ndarray, (k,)
-        The times of the frames, s.
-    """
+    """A figure, and what has to be drawn anew in each of its frames, at ``times``, s, (k,)."""
 
     def __init__(
         self,
@@ -129,12 +114,16 @@ class Stage:
         dense = [one.with_dense_output() for one in solutions]
         moves = [moves_of(one, self.times) for one in dense]
         limit = choices.horizon
-        ends = [one.t_reached if limit is None else one.valid_until(limit) for one in solutions]
+        ends = [None if limit is None else one.valid_until(limit) for one in solutions]
+        asked = [
+            Request(solution=one, horizon=limit, valid_until=end)
+            for one, end in zip(dense, ends, strict=True)
+        ]
         forces = np.concatenate([one.reactions.reshape(-1, 2) for one in moves])
         full = float(np.percentile(np.hypot(*forces.T), TYPICAL))
         reach = max(total_length(one.scene) for one in dense)
         arrows = [arrows_of(one.reactions, full, reach) * choices.reactions for one in moves]
-        runs = [_Run(*one) for one in zip(dense, known, ends, moves, arrows, strict=True)]
+        runs = [_Run(*one) for one in zip(asked, known, moves, arrows, strict=True)]
         with applied(_LETTERING):
             self.figure = new_figure()
             curves = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
@@ -145,12 +134,13 @@ class Stage:
                 _frame_scene(axis, runs, reach)
             self._chains = []
             for k, one in enumerate(runs):
-                axis, links = scenes[k % len(scenes)], range(len(one.solution.scene.links))
+                axis, links = scenes[k % len(scenes)], range(len(one.asked.solution.scene.links))
                 theme = theme_of(axis)
                 colors = [theme.link(i) if len(runs) == 1 else theme.run(k) for i in links]
                 self._chains.append(_Chain(axis, one, colors, choices.trace, self.times))
             self._clock = _note(scenes[0], 0.97, fontsize=CLOCK)
-            _note(scenes[0], 0.87, _told(runs, choices, panels), color=theme_of(scenes[0]).quiet)
+            told = _told(asked, choices.speed, panels)
+            _note(scenes[0], 0.87, told, color=theme_of(scenes[0]).quiet)
         for artist in self.moving():
             artist.set_animated(True)
 
@@ -179,9 +169,10 @@ class _Chain:
 
         self._axis, self._run, self._colors, self._theme = axis, run, colors, theme_of(axis)
         sense = np.sign(times[-1] - times[0])
-        self._is_right = run.is_right_to_its_end | (sense * (times - run.until) <= 0)
-        t, q, _, _ = curve_of(run.solution)
-        self._path = run.solution.scene.positions(t, q)[:, -1]
+        asked = run.asked
+        self._is_right = asked.is_right_to_its_end | (sense * (times - asked.until) <= 0)
+        t, q, _, _ = curve_of(asked.solution)
+        self._path = asked.solution.scene.positions(t, q)[:, -1]
         ends = sense * times - np.array([[trace or 0.0], [0.0]])
         self._tails = np.searchsorted(sense * t, ends, "right").T
         alpha = np.linspace(0.05, 0.8, _TAIL)
@@ -242,9 +233,8 @@ class _Chain:
             size.set_visible(bool(along.any()))
             sides = np.arctan2(along[1], along[0]) + _SIDES
             spots = [self._beyond(size, head, direction(side)) for side in sides]
-            clear = [(np.abs(drawn - spot) - half).max(axis=1).min() for spot, half in spots]
-            best = next((i for i, room in enumerate(clear) if room > 0), int(np.argmax(clear)))
-            size.set_position(spots[best][0])
+            rooms = [(np.abs(drawn - spot) - half).max(axis=1).min() for spot, half in spots]
+            size.set_position(spots[int(np.argmax(np.minimum(rooms, 0.0)))][0])
 
     def _show_name(self, places: Floats, taken: list[tuple[Floats, Floats]]) -> None:
         """Write the name beyond the tip, as the last link points, and clear of other names."""
@@ -280,9 +270,9 @@ def _layout(
     panels: list[Axes] = []
     if is_wide or choices.energy or choices.reactions:
         figure.set_layout_engine("constrained")
-        shape: dict[str, Any] = {"nrows": 2, "ncols": 1, "height_ratios": [2, rows]}
+        shape: dict[str, Any] = {"nrows": 2, "height_ratios": [2, rows]}
         if is_wide:
-            shape = {"nrows": 1, "ncols": 2, "width_ratios": [height, width - height]}
+            shape = {"ncols": 2, "width_ratios": [height, width - height]}
         stage, beside = figure.subfigures(**shape)
         panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
         for axis in panels:
@@ -318,13 +308,11 @@ def _note(axis: Axes, height: float, text: str = "", **how: Any) -> Any:
     return axis.text(0.03, height, text, transform=axis.transAxes, va="top", **how)
 
 
-def _told(runs: Sequence[_Run], choices: Choices, panels: Sequence[Axes]) -> str:
+def _told(asked: Sequence[Request], speed: float, panels: Sequence[Axes]) -> str:
     """Say how fast time passes, and until when all runs are right; shade the curves after that."""
-    pace = f"{choices.speed:g} \N{MULTIPLICATION SIGN} real time"
-    told = [] if choices.speed == 1.0 else [pace]
-    if wrong := [one for one in runs if not one.is_right_to_its_end]:
+    told = [] if speed == 1.0 else [f"{speed:g} \N{MULTIPLICATION SIGN} real time"]
+    if wrong := [one for one in asked if not one.is_right_to_its_end]:
         first = min(wrong, key=lambda one: abs(one.until - one.solution.t_span[0]))
-        asked = Request(solution=first.solution, horizon=choices.horizon, valid_until=first.until)
-        asked.shade(panels)
-        told.append(f"{asked.right()} until {first.until:.4g} s")
+        first.shade(panels)
+        told.append(f"{first.right()} until {first.until:.4g} s")
     return "\n".join(told)
