@@ -286,7 +286,7 @@ $(DONE)/wheel-requirements: pyproject.toml | $(DONE)/build-requirements
 
 $(DONE)/bench-requirements: pyproject.toml | $(DONE)/build-requirements
 	@sh setup/debian_packages.sh doctest also benchmark boost sundials valgrind
-	python setup/requirements.py bench symbolic | $(PIP_INSTALL) -r /dev/stdin
+	python setup/requirements.py bench symbolic control | $(PIP_INSTALL) -r /dev/stdin
 	@touch $@
 
 $(DONE)/lint-requirements: pyproject.toml | $(DONE)/venv

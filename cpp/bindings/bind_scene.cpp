@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
 #include "arguments.hpp"
@@ -116,9 +117,61 @@ Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const 
   });
 }
 
+/// The input that Python names by a joint, or by a text.
+Input input_of(py::handle named) {
+  if (PyLong_Check(named.ptr())) return {.joint = named.cast<int>()};
+  const auto name = named.cast<std::string>();
+  if (name == "pivot.x") return {.kind = Input::Kind::pivot_x};
+  if (name == "pivot.y") return {.kind = Input::Kind::pivot_y};
+  return {.kind = Input::Kind::parameter, .parameter = name};
+}
+
+/// A matrix or a vector as an array of that shape.
+template <class Found>
+Array array_from(const Found& found, const std::vector<py::ssize_t>& shape) {
+  Array array(shape);
+  std::copy_n(found.data(), found.size(), array.mutable_data());
+  return array;
+}
+
+/// The state, its rate, A and B. Returns nothing if t is not a finite number, q not n finite
+/// numbers, or qd neither n finite numbers nor one: the caller then says which.
+std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle q, py::handle qd,
+                                   const py::tuple& inputs) {
+  const std::size_t n = scene.links.size();
+  std::vector<Input> given;
+  given.reserve(inputs.size());
+  for (const py::handle input : inputs) given.push_back(input_of(input));
+  double time = 0.0, rate = 0.0;
+  Vector state(2 * n);
+  if (take_plain(qd, rate)) {
+    state.tail(n).setConstant(rate);
+  } else if (!take_plain(qd, {state.data() + n, n})) {
+    return std::nullopt;
+  }
+  if (!take_plain(t, time) || !take_plain(q, {state.data(), n}) || !std::isfinite(time) ||
+      !state.allFinite()) {
+    return std::nullopt;
+  }
+  const Numbers angles(state.head(n)), rates(state.tail(n));
+  const Linearization found = Equations(scene).linearize(time, angles, rates, given);
+  const auto rows = static_cast<py::ssize_t>(2 * n);
+  const auto columns = static_cast<py::ssize_t>(given.size());
+  return py::make_tuple(array_from(state, {rows}), array_from(found.drift, {rows}),
+                        array_from(found.A, {rows, rows}), array_from(found.B, {rows, columns}));
+}
+
+Array matrix_exponential(const Array& given) {
+  const FloatingPointEnvironment ieee;
+  const py::ssize_t n = given.shape(0);
+  const Matrix exponential = Eigen::Map<const Matrix>(given.data(), n, n).exp();
+  return array_from(exponential, {n, n});
+}
+
 }  // namespace
 
 void bind_scene(py::module_& module) {
+  module.def("matrix_exponential", &matrix_exponential, py::arg("matrix"));
   module.def("scene", &scene_of_python, py::arg("links"), py::arg("gravity"), py::arg("effects"));
   py::class_<Scene>(module, "Scene", py::dynamic_attr(),
                     "A scene that was checked, as the core holds it.")
@@ -134,6 +187,33 @@ void bind_scene(py::module_& module) {
       .def("acceleration_of_state", &acceleration_of_state, py::arg("t"), py::arg("q"),
            py::arg("qd"))
       .def("jacobian", &jacobian_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
+      .def("linearize", &linearize, py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("inputs"))
+      .def(
+          "trim",
+          [](const Scene& scene, double t, const std::vector<double>& q, const py::tuple& joints) {
+            std::vector<int> given;
+            for (const py::handle joint : joints) {
+              const Input input = input_of(joint);
+              if (input.kind != Input::Kind::torque) {
+                throw py::value_error("inputs: " + joint.cast<std::string>() +
+                                      ": must be a joint, or its torque");
+              }
+              given.push_back(input.joint);
+            }
+            const Vector torques = Equations(scene).trim(t, q, given);
+            return array_from(torques, {torques.size()});
+          },
+          py::arg("t"), py::arg("q"), py::arg("joints"))
+      .def(
+          "inverse_dynamics",
+          [](const Scene& scene, const Array& t, const Array& q, const Array& qd,
+             const Array& qdd) {
+            Equations equations(scene);
+            return array_of({q.shape(0), q.shape(1)}, [&](py::ssize_t i) {
+              return equations.inverse_dynamics(t.at(i), row(q, i), row(qd, i), row(qdd, i));
+            });
+          },
+          py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("qdd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(
           "mass_matrix",
@@ -150,6 +230,14 @@ void bind_scene(py::module_& module) {
                             [&](py::ssize_t i) { return positions(scene, t.at(i), row(q, i)); });
           },
           py::arg("t"), py::arg("q"))
+      .def(
+          "velocities",
+          [](const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+            return array_of({q.shape(0), q.shape(1) + 1, 2}, [&](py::ssize_t i) {
+              return velocities(scene, t.at(i), row(q, i), row(qd, i));
+            });
+          },
+          py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(
           "mass_centers",
           [](const Scene& scene, const Array& t, const Array& q) {

@@ -130,6 +130,17 @@ TEST_CASE("equations at a state are those of a run, and of each other") {
                         (2.0 * step);
     CHECK((exact.by_q.col(j) - by_q).cwiseAbs().maxCoeff() < 1e-8);
   }
+  const Linearization close =
+      equations.linearize(0.0, q, qd, {{.joint = 2}, {.kind = Input::Kind::pivot_y}});
+  CHECK(close.drift.tail(2) == qdd);
+  CHECK(close.A.bottomLeftCorner(2, 2) == exact.by_q);
+  CHECK((M.lazyProduct(close.B.col(0).tail(2)) - Eigen::Vector2d(-1.0, 1.0)).norm() < 1e-14);
+  // The pivot's acceleration is less gravity.
+  CHECK((M.lazyProduct(close.B.col(1).tail(2)) + weight / scene.gravity).norm() < 1e-14);
+  const Vector torques = equations.inverse_dynamics(0.0, q, qd, qdd + close.B.col(0).tail(2));
+  CHECK((torques - Eigen::Vector2d(0.0, 1.0)).norm() < 1e-13);
+  CHECK_THROWS_WITH(equations.linearize(0.0, q, qd, {{.joint = 3}}),
+                    doctest::Contains("must be one of the joints 1 to 2"));
   CHECK_THROWS_WITH(equations.accelerations(0.0, {1.0}, qd), "q: has 1 numbers: must have 2");
   Scene heavier = scene;
   heavier.links[1].mass = -1.0;

@@ -3,6 +3,7 @@
 ///
 ///     u_i = (cos q_i, sin q_i),  n_i = du_i/dq_i = (-sin q_i, cos q_i)
 ///     P_i = P_{i-1} + L_i u_i              C_i = P_{i-1} + c_i u_i
+///     v_{P_i} = v_{P_{i-1}} + L_i qd_i n_i
 ///     a_{P_i} = a_{P_{i-1}} + L_i (qdd_i n_i - qd_i^2 u_i),  a_{C_i} likewise with c_i
 ///     T = sum_i (m_i v_{C_i}^2 + I_i qd_i^2)/2 + sum_j J_j phid_j^2/2     V = -g sum_i m_i y_{C_i}
 ///
@@ -19,6 +20,9 @@ namespace pendcore {
 
 /// The pivot, the joints and the tip, (n + 1, 2), m.
 Points positions(const Scene& scene, double t, const Numbers& q);
+
+/// The velocities of the pivot, the joints and the tip, (n + 1, 2), m/s.
+Points velocities(const Scene& scene, double t, const Numbers& q, const Numbers& qd);
 
 /// C_i, (n, 2), m; of the links, a payload excluded.
 Points mass_centers(const Scene& scene, double t, const Numbers& q);

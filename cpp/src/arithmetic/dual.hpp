@@ -100,6 +100,7 @@ struct Constants<Dual<Row>> {
   {
     return Dual<Row>(Constants<Row>::of(x));
   }
+  PENDCORE_INLINE static Dual<Row> of(const Dual<Row>& x) { return x; }
 };
 
 /// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
@@ -164,6 +165,12 @@ template <class Row>
 PENDCORE_INLINE Dual<Row> power(const Dual<Row>& x, double p) {
   if (p == 1.0) return x;
   return {power(x.value, p), broadcast<Row>(p) * power(x.value, p - 1.0) * x.slope};
+}
+/// The same where the exponent has a slope, too: (x^p)' = p x^(p-1) x' + p' x^p log x.
+PENDCORE_INLINE Dual<double> power(const Dual<double>& x, const Dual<double>& p) {
+  Dual<double> result = power(x, p.value);
+  if (x.value > 0.0) result.slope += p.slope * result.value * logarithm(x.value);
+  return result;
 }
 
 }  // namespace pendcore

@@ -1,33 +1,16 @@
 #include "pendcore/equations.hpp"
 
-#include <optional>
-
 #include "arithmetic/floating_point_environment.hpp"
 #include "arithmetic/sine_cosine.hpp"
+#include "dynamics/compiled_equations.hpp"
 #include "dynamics/energetics/ledger.hpp"
-#include "dynamics/jacobian.hpp"
-#include "dynamics/joint_forces.hpp"
+#include "dynamics/inverse_dynamics.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
 #include "pendcore/effects/payload.hpp"
 #include "pendcore/mechanics.hpp"
-#include "scene/effects_of_scene.hpp"
-#include "text/message.hpp"
 
 namespace pendcore {
-
-struct Equations::Compiled {
-  explicit Compiled(const Scene& given) : scene(given), equations(equations_of_motion(given)) {}
-
-  void require_state(const Numbers& q, const Numbers& qd) const {
-    require_size("q", q.span(), scene.links.size());
-    require_size("qd", qd.span(), scene.links.size());
-  }
-
-  Scene scene;
-  EquationsOfMotion equations;
-  std::optional<Jacobian> derivatives{};
-  std::shared_ptr<EffectsOfRun> loads = nullptr;  ///< for reactions
-  std::optional<JointForces> joint_forces{};      ///< for the mass matrix
-};
 
 Equations::Equations(const Scene& scene) {
   const FloatingPointEnvironment ieee;
@@ -93,6 +76,31 @@ Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
     forces.row(i) = beyond;
   }
   return forces;
+}
+
+Vector Equations::inverse_dynamics(double t, const Numbers& q, const Numbers& qd,
+                                   const Numbers& qdd) {
+  const FloatingPointEnvironment ieee;
+  compiled_->require_state(q, qd);
+  require_size("qdd", qdd.span(), q.span().size());
+  const Scene& scene = compiled_->scene;
+  std::vector<int> modes = modes_at(scene, t, q.data(), qd.data());
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    const bool can_stick = effect.holding_torque().has_value();
+    if (can_stick && relative(qd.data(), effect.joint()) == 0.0) modes[i] = 0;
+  }
+  const std::vector<double> all = torques_of_motion(mechanism(scene, modes), t, q, qd, qdd);
+  Vector torques = View(all.data(), q.size());
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const std::optional<UserLaw> user = scene.effects[i]->user_law(modes[i]);
+    if (!user) continue;
+    Vector of_links = Vector::Zero(q.size());
+    (*user)(t, static_cast<int>(q.size()), q.data(), qd.data(), of_links.data());
+    double beyond = 0.0;
+    for (Eigen::Index k = q.size(); k-- > 0;) torques[k] -= beyond += of_links[k];
+  }
+  return torques;
 }
 
 Matrix Equations::mass_matrix(const Numbers& q) {

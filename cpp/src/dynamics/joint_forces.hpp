@@ -33,6 +33,7 @@ struct JointForces {
   void set_up();
   /// M^-1 J^T lambda, (n).
   Vector response() const { return response(problem.lambda); }
+  Vector response(const Vector& lambda) const;
   /// x = M^-1 J^T lambda, (n). Refines lambda and x until J x + a = 0 in the joints between their
   /// bounds and M x = J^T lambda, both to the rounding of x. What W and the factors of M alone give
   /// loses as many digits as the condition of M has.
@@ -40,7 +41,6 @@ struct JointForces {
 
  private:
   int body_before(int joint) const { return joint > 0 ? body_[joint - 1] : -1; }
-  Vector response(const Vector& lambda) const;
   Vector of_links(const Vector& bodies) const;  ///< what the body of each link has, 0 on the ground
 
   int bodies_ = 0;

@@ -40,6 +40,18 @@ Points positions(const Scene& scene, double t, const Numbers& q) {
   return points;
 }
 
+Points velocities(const Scene& scene, double t, const Numbers& q, const Numbers& qd) {
+  const FloatingPointEnvironment ieee;
+  const auto u = directions(scene, q);
+  require_size("qd", qd.span(), scene.links.size());
+  Points points(q.size() + 1, 2);
+  points.row(0) = PlaneVector(pivot_motion(scene, t).velocity);
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    points.row(i + 1) = points.row(i) + scene.links[i].length * qd[i] * across(u.row(i));
+  }
+  return points;
+}
+
 Points mass_centers(const Scene& scene, double t, const Numbers& q) {
   const FloatingPointEnvironment ieee;
   const auto u = directions(scene, q);

@@ -18,27 +18,30 @@ namespace pendcore {
 ///
 /// All such effects on one joint are summed once, when the scene is compiled or a mode changes, and
 /// together they cost as much as one.
-struct Couple {
-  double held = 0.0;
-  double slope = 0.0;
-  double start = 0.0;
-  double on_phi = 0.0;
-  double on_phid = 0.0;
-  double on_phid2 = 0.0;
-  double on_phid3 = 0.0;
-  double gain = 0.0;
+///
+/// `Number` is a double, or a dual number with the slope along a parameter of the effect.
+template <class Number>
+struct CoupleOf {
+  Number held{};
+  Number slope{};
+  Number start{};
+  Number on_phi{};
+  Number on_phid{};
+  Number on_phid2{};
+  Number on_phid3{};
+  Number gain{};
 
   /// Those that Couples add up.
   template <class Any>
   static auto fields(Any& x) {
     return std::tie(x.held, x.slope, x.start, x.on_phi, x.on_phid, x.on_phid2, x.on_phid3);
   }
-
-  double torque(double t, double phi, double phid, double sine) const {
-    const double of_rate = ((on_phid3 * phid + on_phid2) * phid + on_phid) * phid;
-    return held + slope * (t - start) + on_phi * phi + of_rate + gain * sine;
+  Number torque(double t, double phi, double phid, const Number& sine) const {
+    const Number of_rate = phid * (phid * (phid * on_phid3 + on_phid2) + on_phid);
+    return held + slope * (Number(t) - start) + phi * on_phi + of_rate + gain * sine;
   }
 };
+using Couple = CoupleOf<double>;
 
 /// The sums of the couples on a row of joints. The alignment is set here: GCC reports the alignment
 /// of a wide pack as on the baseline, and its clones rely on the true alignment.
@@ -50,7 +53,7 @@ struct alignas(std::bit_floor(sizeof(Row))) Couples {
 
   template <class Any>
   static auto fields(Any& x) {
-    return Couple::fields(x);
+    return CoupleOf<Row>::fields(x);
   }
 
   template <class At>

@@ -56,7 +56,7 @@ struct StribeckLaw {
   Row coulomb{};  // has the sign of w, as the next two have
   Row peak{};
   Row inverse_velocity{};
-  double exponent = 2.0;
+  typename Lanes<Row>::Number exponent = 2.0;
 
   template <class Any>
   static auto fields(Any& x) {

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
@@ -31,10 +31,13 @@ from pendcore._scene.link import Link
 from pendcore._scene.parametrized import tuple_of
 
 if TYPE_CHECKING:
+    from pendcore._scene.linearization import Linearization
     from pendcore.explanation.explanation import Absence, Explanation
 
 _PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
 """The name of a parameter, as the core lists them (cpp/include/pendcore/parameters.hpp)."""
+_MOVES_ENDS = re.compile(r"link\[\d+\]\.length|effect\[\d+\]\.[xy]\..+")
+"""The names of parameters that change places: lengths, and the sinusoids of driven pivots."""
 MOST_ROWS = 20
 """The most links in the table of a notebook."""
 
@@ -291,6 +294,139 @@ class Scene:
         by_q, by_qd = self._compiled.jacobian(*states)
         return by_q.reshape(*lead, n, n), by_qd.reshape(*lead, n, n)
 
+    def linearize(
+        self,
+        q: npt.ArrayLike,
+        qd: npt.ArrayLike = 0.0,
+        t: float = 0.0,
+        *,
+        inputs: Iterable[int | str] = (),
+        outputs: Iterable[str] | None = None,
+    ) -> Linearization:
+        """The motion close to a state, as the linear system of a controller.
+
+        Parameters
+        ----------
+        q : array_like, (n,)
+            Absolute angles, rad. The state need not be an equilibrium.
+        qd : array_like, (n,), or float, default 0
+            Rates, rad/s; one number stands for all.
+        t : float, default 0
+            Time, s, of effects that depend on it.
+        inputs : iterable of int or str
+            A joint, for a torque in it beside what its effects do (N m; also ``"torque[2]"``);
+            ``"pivot.x"`` or ``"pivot.y"``, for an acceleration of the pivot beside that of a drive
+            (m/s^2; to the right, and downward); or the name of one of `parameters`, for a change of
+            it.
+        outputs : iterable of str, optional
+            ``"q[1]"``, ``"qd[1]"``, ``"qdd[1]"`` of a link; ``"phi[2]"``, ``"phid[2]"`` of a joint,
+            relative to the link before; ``"x[2]"``, ``"y[2]"``, ``"vx[2]"``, ``"vy[2]"`` of the end
+            of a link. The state, unless given.
+
+        Raises
+        ------
+        ValueError
+            Where the motion has no derivative: at a stop, in a joint at rest under dry friction,
+            where two laws of an effect meet; the message says on which side it has one. Also for
+            a torque in a joint that a `Lock` holds, and for names that are not known.
+
+        Notes
+        -----
+        The derivatives are those of the motion itself, by dual numbers through its equations, and
+        not of a step of some method. Functions of the user's alone are differentiated by central
+        differences, which are right to some ten digits.
+
+        Examples
+        --------
+        >>> upright = pc.Scene.textbook().linearize([-np.pi / 2, -np.pi / 2], inputs=[1])
+        >>> float(np.linalg.eigvals(upright.A).real.max().round(3))  # 1/s: how fast it falls
+        7.188
+        >>> upright.B[2:, 0].round(4)
+        array([ 1.7143, -2.5714])
+        """
+        from pendcore._scene import linearization
+
+        n = len(self.links)
+        driven, names = linearization.known_inputs(linearization.tuple_of_names("inputs", inputs))
+        found = self._compiled.linearize(t, q, qd, driven)
+        if found is None:  # a state of plain numbers costs three microseconds, as in a loop
+            (time,) = vector("t", t, 1, "s")
+            state = vector("q", q, n, "rad"), vector("qd", qd, n, "rad/s")
+            found = self._compiled.linearize(time, *state, driven)
+        assert found is not None
+        x, drift, A, B = found
+        C, D, of_state = linearization.state_as_output(n, len(driven))
+        system = linearization.Linearization(A, B, C, D, drift, x, x, names, of_state)
+        if outputs is None:
+            return system
+        wanted = linearization.tuple_of_names("outputs", outputs)
+        here, (angles, rates) = self.parameters(), np.split(x, 2)
+
+        def ends(changes: Mapping[str, float]) -> Floats:
+            scene = self.with_parameters(changes)
+            return np.hstack([scene.positions(t, angles), scene.velocities(t, angles, rates)])[1:].T
+
+        ends_by = np.zeros((4, n, len(names)))
+        for column, name in enumerate(names):
+            if _MOVES_ENDS.fullmatch(name):
+                ends_by[..., column] = linearization.derivative(ends, name, here[name])
+        lengths = np.array([link.length for link in self.links])
+        C, D, values = linearization.output_rows(system, lengths, ends({}), ends_by, wanted)
+        return replace(system, C=C, D=D, outputs_there=values, outputs=wanted)
+
+    def inverse_dynamics(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike
+    ) -> Floats:
+        """Torques in the joints that give these accelerations, N m, (..., n).
+
+        They come beside what the effects do. No lock or stop pushes, and a joint at rest has no dry
+        friction. ``qdd`` is in rad/s^2; the arguments are as in `accelerations`.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.inverse_dynamics(0.0, [0.0, 0.0], qd=[0.0, 0.0], qdd=[0.0, 0.0])  # held level
+        array([-19.614 ,  -4.9035])
+        """
+        lead, states = self._broadcast(t, q=q, qd=qd, qdd=qdd)
+        return self._compiled.inverse_dynamics(*states).reshape(*lead, len(self.links))
+
+    def trim(self, q: npt.ArrayLike, t: float = 0.0, *, inputs: Iterable[int | str]) -> Floats:
+        """Torques in some joints that hold these angles at rest, N m, one for each of ``inputs``.
+
+        Parameters
+        ----------
+        q : array_like, (n,)
+            Absolute angles, rad.
+        t : float, default 0
+            Time, s, of effects that depend on it.
+        inputs : iterable of int or str
+            The joints that are driven, beside what their effects do: 2, or ``"torque[2]"``.
+
+        Raises
+        ------
+        ValueError
+            If the other joints do not rest: the message says which, and what torque they lack.
+
+        Notes
+        -----
+        In a chain, what a joint takes to rest follows from the weights beyond it, whatever the
+        others do. Locks, stops and dry friction hold a joint that is not driven, if they can; a
+        joint that is driven gets no help from its friction.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.trim([0.0, np.pi / 2], inputs=[1])  # link 1 level, link 2 hangs
+        array([-14.7105])
+        """
+        from pendcore._scene import linearization
+
+        named = linearization.tuple_of_names("inputs", inputs)
+        joints, _ = linearization.known_inputs(named)
+        (time,), angles = vector("t", t, 1, "s"), vector("q", q, len(self.links), "rad")
+        return self._compiled.trim(time, angles, joints)
+
     def positions(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Pivot, joints and tip, m, (..., n+1, 2): x right, y down; a driven pivot moves.
 
@@ -306,6 +442,22 @@ class Scene:
         """
         lead, states = self._broadcast(t, q=q)
         return self._compiled.positions(*states).reshape(*lead, len(self.links) + 1, 2)
+
+    def velocities(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
+        """Velocities of pivot, joints and tip, m/s, (..., n+1, 2): x right, y down.
+
+        The arguments are as in `accelerations`.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> scene.velocities(0.0, [0.0, np.pi / 2], qd=[1.0, 2.0]).round(3)
+        array([[ 0.,  0.],
+               [ 0.,  1.],
+               [-2.,  1.]])
+        """
+        lead, states = self._broadcast(t, q=q, qd=qd)
+        return self._compiled.velocities(*states).reshape(*lead, len(self.links) + 1, 2)
 
     def mass_centers(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Mass centres of the links, a payload excluded, m, (..., n, 2): x right, y down.
@@ -360,7 +512,7 @@ class Scene:
     ) -> tuple[tuple[int, ...], list[Floats]]:
         """Return the leading shape of times and angles or rates, and each of them in rows."""
         n = len(self.links)
-        units = {"q": "rad", "qd": "rad/s"}
+        units = {"q": "rad", "qd": "rad/s", "qdd": "rad/s^2"}
         times = finite_array("t", t, "s")
         given = [link_array(name, one, n, units[name]) for name, one in angles.items()]
         shapes = [times.shape, *(one.shape for one in given)]

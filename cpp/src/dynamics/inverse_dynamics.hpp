@@ -1,0 +1,68 @@
+/// \file
+/// The torques that a motion takes, by the equations of Newton and Euler from the tip to the pivot,
+/// and how they change with a parameter of the scene.
+///
+///     F_{i-1,i} = m_i (a_{C_i} - g e_y) - F_ext,i + F_{i,i+1},   F_{n,n+1} = m_p (a_tip - g e_y)
+///     tau_i     = I_i qdd_i + m_i c_i u_i x (a_{C_i} - g e_y) + L_i u_i x F_{i,i+1} - M_ext,i
+///                 + tau_{i+1}
+///
+/// (Eqs. (2.3) and (2.4), y downward). F_ext and M_ext are the force of the effects on a link and
+/// its moment about the joint where the link begins; what rotors take and couples give is added to
+/// tau. On numbers that are dual along a parameter p, they give d tau/d p of the same motion, and
+/// thereby d qdd/d p = -M^-1 J^T d tau/d p.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arithmetic/dual.hpp"
+#include "effects/laws.hpp"
+#include "pendcore/scene.hpp"
+#include "pendcore/vector.hpp"
+
+namespace pendcore {
+
+/// All numbers on which the torques depend, with each effect in a mode. A user's function is none
+/// of them. `Number` is a double, or a dual number with the slope along a parameter.
+template <class Number>
+struct Mechanism {
+  struct Body {
+    Number mass{}, length{}, center{}, inertia{};
+    Number armature{};  ///< of the rotor in the joint where the link begins, kg m^2
+  };
+  struct Wave {
+    Number angular_frequency{}, phase{};
+  };
+  struct Acting {
+    int place = 0;  ///< the joint or the link, from 0
+    std::optional<CoupleOf<Number>> couple{};
+    std::optional<LawOn<Number>> law{};
+    std::optional<PivotLawOf<Number>> pivot{};
+    std::vector<Wave> waves{};
+  };
+
+  Number gravity{}, payload_mass{}, payload_inertia{};
+  std::vector<Body> bodies{};
+  std::vector<Acting> effects{};
+};
+
+/// The modes that a state calls for, of each effect.
+std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd);
+
+Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
+
+/// The same with slopes along a parameter (pendcore/parameters.hpp), at a time. They are right to
+/// some 13 digits: the constants of laws are smooth functions of parameters, whose differences are
+/// extrapolated. Throws std::invalid_argument for a name that the scene does not have, and for a
+/// limit that cuts a table close to that time.
+Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
+                                        const std::string& parameter);
+
+/// tau, N m, (n), from the angles (rad), rates (rad/s) and accelerations (rad/s^2), (n) each.
+/// Cost: O(n).
+template <class Number>
+std::vector<Number> torques_of_motion(const Mechanism<Number>& mechanism, double t,
+                                      const Numbers& q, const Numbers& qd, const Numbers& qdd);
+
+}  // namespace pendcore

@@ -1,0 +1,237 @@
+#include <algorithm>
+#include <cmath>
+
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/floating_point_environment.hpp"
+#include "arithmetic/sine_cosine.hpp"
+#include "dynamics/compiled_equations.hpp"
+#include "dynamics/contact/held_joints.hpp"
+#include "dynamics/inverse_dynamics.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
+#include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/motor.hpp"
+
+namespace pendcore {
+namespace {
+
+/// The largest difference of two derivatives, as a share of the largest entry, that is rounding.
+constexpr double rounding_of_derivatives = 1e-10;
+
+std::string joint_name(const EffectBehaviour& effect) {
+  return "joint " + std::to_string(effect.joint());
+}
+
+/// Throws for a joint that is at an end of its range, or beyond it.
+void require_inside_stops(const Scene& scene, const double* q) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const auto* stop = scene.effects[i].get_if<JointStop>();
+    if (stop == nullptr) continue;
+    const double phi = relative(q, stop->joint);
+    const auto [lower, upper] = stop->range;
+    const double rounding = last_bits_share * std::max(1.0, std::abs(phi));
+    if (phi - lower > rounding && upper - phi > rounding) continue;
+    throw std::invalid_argument(
+        effect_name(scene, i) + ": joint " + std::to_string(stop->joint) + " is at " + text(phi) +
+        " rad, an end of its range: the motion has no derivative there; inside the range it has "
+        "one, and at rest at the stop it is that of a scene with Lock(joint=" +
+        std::to_string(stop->joint) + ")");
+  }
+}
+
+/// The modes that meet at a state beside the mode of an effect there: those of the guards that are
+/// zero, and that of a run which comes to this time from the other side.
+std::vector<int> modes_beside(const EffectBehaviour& effect, int mode, double t, double phi,
+                              double phid, double speed) {
+  std::vector<int> found;
+  const int before = effect.mode_at(t, phi, phid, false);
+  if (before != mode) found.push_back(before);
+  const std::vector<Guard> guards = effect.guards(mode);
+  for (std::size_t k = 0; k < guards.size(); ++k) {
+    const auto& [offset, on_phi, on_phid] = guards[k];
+    const double size = std::abs(offset) + std::abs(on_phi * phi) +
+                        std::abs(on_phid) * std::max(std::abs(phid), speed);
+    const double value = offset + on_phi * phi + on_phid * phid;
+    if (std::abs(value) <= last_bits_share * size) found.push_back(effect.next_mode(mode, k));
+  }
+  return found;
+}
+
+[[noreturn]] void refuse_corner(const Scene& scene, std::size_t i, double t, bool is_in_time) {
+  const EffectBehaviour& effect = *scene.effects[i];
+  const std::string name = effect_name(scene, i) + ": ";
+  if (is_in_time) {
+    throw std::invalid_argument(name + "its law jumps at t = " + text(t) +
+                                " s: the motion has no derivative there; it has one at any time "
+                                "before or after that");
+  }
+  if (effect.holding_torque()) {
+    throw std::invalid_argument(
+        name + joint_name(effect) +
+        " is at rest, where dry friction jumps: the motion has no derivative there. It has one "
+        "where the joint slides, at a rate of either sign; and where it sticks, that of a scene "
+        "with Lock(" +
+        joint_name(effect).replace(5, 1, "=") + ") in place of the friction");
+  }
+  throw std::invalid_argument(name + "two of its laws meet at this state of " + joint_name(effect) +
+                              ": the motion has no derivative there; it has one on either side, at "
+                              "a slightly larger or smaller angle or rate");
+}
+
+/// What has to agree on both sides of a state: the accelerations and their derivatives.
+struct DerivativesAt {
+  Vector qdd;
+  Derivatives by;
+
+  double largest() const {
+    return std::max(
+        {qdd.cwiseAbs().maxCoeff(), by.by_q.cwiseAbs().maxCoeff(), by.by_qd.cwiseAbs().maxCoeff()});
+  }
+  double difference(const DerivativesAt& other) const {
+    return std::max({(qdd - other.qdd).cwiseAbs().maxCoeff(),
+                     (by.by_q - other.by.by_q).cwiseAbs().maxCoeff(),
+                     (by.by_qd - other.by.by_qd).cwiseAbs().maxCoeff()});
+  }
+};
+
+std::string input_name(int joint) { return "inputs: torque in joint " + std::to_string(joint); }
+
+void require_joint(const Scene& scene, int joint) {
+  const auto n = static_cast<int>(scene.links.size());
+  if (joint >= 1 && joint <= n) return;
+  throw std::invalid_argument(input_name(joint) + ": must be one of the joints 1 to " +
+                              std::to_string(n));
+}
+
+/// The torques in `joints` that have the effect of an input of one unit.
+Vector torques_of(const Scene& scene, const JointForces& forces, const Input& input) {
+  const auto m = static_cast<Eigen::Index>(forces.joints.size());
+  Vector torques = Vector::Zero(m);
+  if (input.kind == Input::Kind::torque) {
+    require_joint(scene, input.joint);
+    const auto found = std::ranges::find(forces.joints, input.joint - 1);
+    if (found == forces.joints.end()) {
+      throw std::invalid_argument(
+          input_name(input.joint) +
+          ": a Lock holds this joint, which no torque turns: choose another "
+          "joint, or a scene without this Lock");
+    }
+    torques[found - forces.joints.begin()] = 1.0;
+    return torques;
+  }
+  // On the angle of link k, the pivot's acceleration acts as a torque a_k (xdd_0 s_k - ydd_0 c_k).
+  double beyond = 0.0;
+  auto k = static_cast<int>(scene.links.size());
+  for (Eigen::Index r = m; r-- > 0;) {
+    while (k-- > forces.joints[r]) {
+      const double arm = input.kind == Input::Kind::pivot_x ? forces.sine[k] : -forces.cosine[k];
+      beyond += forces.inertia.links[k].first_moment * arm;
+    }
+    ++k;
+    torques[r] = beyond;
+  }
+  return torques;
+}
+
+/// The torques in `joints` that change the accelerations as one unit of a parameter does. They are
+/// opposite to those that the same motion takes more.
+Vector torques_of_parameter(const Scene& scene, const JointForces& forces,
+                            const std::string& parameter, double t, const Numbers& q,
+                            const Numbers& qd, const Numbers& qdd) {
+  const std::vector<int> modes = modes_at(scene, t, q.data(), qd.data());
+  const auto all = torques_of_motion(mechanism_along(scene, modes, t, parameter), t, q, qd, qdd);
+  Vector torques(forces.joints.size());
+  for (Eigen::Index r = 0; r < torques.size(); ++r) torques[r] = -all[forces.joints[r]].slope;
+  return torques;
+}
+
+}  // namespace
+
+Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd,
+                                   const std::vector<Input>& inputs) {
+  const FloatingPointEnvironment ieee;
+  compiled_->require_state(q, qd);
+  const Scene& scene = compiled_->scene;
+  const EquationsOfMotion& equations = compiled_->equations;
+  const Eigen::Index n = q.size();
+  require_inside_stops(scene, q.data());
+  const auto here = [&] {
+    DerivativesAt found{.qdd = Vector(n), .by = {.by_q = Matrix(n, n), .by_qd = Matrix(n, n)}};
+    (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
+    accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
+    return found;
+  };
+  if (!compiled_->derivatives) compiled_->derivatives.emplace(scene, equations);
+  if (equations.effects) choose_modes(*equations.effects, t, q.data(), qd.data(), true);
+  const DerivativesAt found = here();
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (!effect.has_modes()) continue;
+    const int joint = effect.joint();
+    const double phi = joint > 0 ? relative(q.data(), joint) : 0.0;
+    const double phid = joint > 0 ? relative(qd.data(), joint) : 0.0;
+    const int mode = equations.effects->modes[i];
+    const bool is_in_time = effect.mode_at(t, phi, phid, false) != mode;
+    for (const int other :
+         modes_beside(effect, mode, t, phi, phid, equations.held_joints->natural_speed())) {
+      equations.effects->put_mode(i, other);
+      const double difference = here().difference(found);
+      equations.effects->put_mode(i, mode);
+      if (difference <= rounding_of_derivatives * found.largest()) continue;
+      refuse_corner(scene, i, t, is_in_time);
+    }
+  }
+
+  Linearization result{.drift = Vector(2 * n),
+                       .A = Matrix::Zero(2 * n, 2 * n),
+                       .B = Matrix::Zero(2 * n, static_cast<Eigen::Index>(inputs.size()))};
+  result.drift << qd, found.qdd;
+  result.A.topRightCorner(n, n).setIdentity();
+  result.A.bottomLeftCorner(n, n) = found.by.by_q;
+  result.A.bottomRightCorner(n, n) = found.by.by_qd;
+  if (inputs.empty()) return result;
+  JointForces& forces = compiled_->free_joints();
+  forces.set_mass_matrix(q.data());
+  forces.set_up();
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const Vector torques =
+        inputs[k].kind == Input::Kind::parameter
+            ? torques_of_parameter(scene, forces, inputs[k].parameter, t, q, qd, found.qdd)
+            : torques_of(scene, forces, inputs[k]);
+    result.B.col(static_cast<Eigen::Index>(k)).tail(n) = forces.response(torques);
+  }
+  return result;
+}
+
+Vector Equations::trim(double t, const Numbers& q, const std::vector<int>& joints) {
+  const FloatingPointEnvironment ieee;
+  const Scene& scene = compiled_->scene;
+  const Vector rest = Vector::Zero(q.size());
+  const Vector wanted = inverse_dynamics(t, q, rest, rest);
+  Scene driven = scene;
+  Vector torques(joints.size());
+  std::vector<bool> is_driven(scene.links.size());
+  double size = wanted.cwiseAbs().maxCoeff();
+  for (const Link& link : scene.links) size += std::abs(scene.gravity) * link.mass * link.length;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    require_joint(scene, joints[k]);
+    torques[static_cast<Eigen::Index>(k)] = wanted[joints[k] - 1];
+    is_driven[joints[k] - 1] = true;
+    driven.effects.push_back(Motor{.joint = joints[k], .constant = wanted[joints[k] - 1]});
+  }
+  const Vector qdd = Equations(driven).accelerations(t, q, rest);
+  const Matrix mass = mass_matrix(q);
+  std::string told;
+  for (int j = 1; j <= qdd.size(); ++j) {
+    const double moment = mass(j - 1, j - 1) * relative(qdd.data(), j);
+    if (is_driven[j - 1] || std::abs(moment) <= rounding_of_derivatives * size) continue;
+    if (std::abs(wanted[j - 1]) <= rounding_of_derivatives * size) continue;
+    told += (told.empty() ? "joint " : " and joint ") + std::to_string(j) + " takes " +
+            text(wanted[j - 1]) + " N m";
+  }
+  if (told.empty()) return torques;
+  throw std::invalid_argument("q: these angles do not rest: " + told +
+                              ", which nothing there gives: drive it, too, or choose other angles");
+}
+
+}  // namespace pendcore

@@ -1,0 +1,203 @@
+"""The motion close to a state as a linear system: what `Scene.linearize` returns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any, TypeVar
+
+import numpy as np
+
+from pendcore import _core
+from pendcore._messages.arguments import Floats, did_you_mean, positive, whole_number
+
+PIVOT = ("pivot.x", "pivot.y")
+Name = TypeVar("Name")
+_TORQUE = re.compile(r"torque\[(\d+)\]")
+_OUTPUT = re.compile(r"(q|qd|qdd|phi|phid|x|y|vx|vy)\[(\d+)\]")
+
+
+@dataclass(slots=True, eq=False)
+class Linearization:
+    """The motion close to a state ``x_0 = (q, qd)``, as a linear system.
+
+        dx/dt = drift + A (x - x_0) + B u        y - y_0 = C (x - x_0) + D u
+
+    Attributes
+    ----------
+    A : ndarray, (2n, 2n)
+        Exact to rounding, as `Scene.jacobian` is.
+    B : ndarray, (2n, k)
+        A column for each input.
+    C : ndarray, (m, 2n)
+        A row for each output.
+    D : ndarray, (m, k)
+    drift : ndarray, (2n,)
+        dx/dt at the state without input: zero at an equilibrium.
+    outputs_there : ndarray, (m,)
+        ``y_0``.
+    x : ndarray, (2n,)
+        The state ``x_0``: angles, rad, and rates, rad/s.
+    inputs, outputs : tuple of str
+        Names: ``"torque[1]"``, ``"q[2]"``.
+    dt : float or None
+        The step, s, of a system in discrete time (`discretize`), whose ``A`` and ``B`` lead from
+        one time to the next: ``x' - x_0 = drift + A (x - x_0) + B u``.
+    """
+
+    A: Floats
+    B: Floats
+    C: Floats
+    D: Floats
+    drift: Floats
+    outputs_there: Floats
+    x: Floats
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    dt: float | None = None
+
+    def discretize(self, dt: float) -> Linearization:
+        """Return the system that leads from one time to the next, with inputs held in between.
+
+        It is the exact solution of the linear system, by the exponential of its matrix, and not a
+        step of some method.
+
+        Parameters
+        ----------
+        dt : float
+            The time, s, from one to the next; > 0.
+
+        Raises
+        ------
+        ValueError
+            If ``dt`` is out of its range, or if the system is discrete.
+
+        Notes
+        -----
+        Source: Van Loan, IEEE Trans. Automatic Control 23 (1978) 395; the exponential is Eigen's.
+
+        Examples
+        --------
+        >>> upright = pc.Scene.textbook().linearize([-np.pi / 2, -np.pi / 2], inputs=[1])
+        >>> every_10_ms = upright.discretize(0.01)
+        >>> every_10_ms.B[:, 0].round(6)
+        array([ 8.6000e-05, -1.2900e-04,  1.7160e-02, -2.5749e-02])
+        """
+        step = positive("dt", dt, "s")
+        if self.dt is not None:
+            raise ValueError(f"dt = {dt}: the system is discrete, with a step of {self.dt} s")
+        n, k = self.B.shape
+        both = np.zeros((n + k + 1, n + k + 1))
+        both[:n] = np.hstack([self.A, self.B, self.drift[:, np.newaxis]])
+        A, B, drift = np.split(_core.matrix_exponential(both * step)[:n], [n, n + k], axis=1)
+        return replace(self, A=A, B=B, drift=drift[:, 0], dt=step)
+
+    def to_control(self) -> Any:
+        """Return the system as a ``control.StateSpace`` of python-control, with the names.
+
+        It has no place for the `drift`, so a state that moves is refused.
+
+        Raises
+        ------
+        ImportError
+            If python-control is not installed.
+        ValueError
+            If the state is no equilibrium.
+        """
+        import control
+
+        if np.any(np.abs(self.drift) > 1e-9 * max(1.0, float(np.abs(self.A).max()))):
+            raise ValueError(
+                f"drift = {self.drift}: the state moves without input, and python-control's "
+                "systems have an equilibrium at 0: linearize at one, such as `trim` finds"
+            )
+        n = self.x.size // 2
+        states = [f"{kind}[{i}]" for kind in ("q", "qd") for i in range(1, n + 1)]
+        names = {"inputs": list(self.inputs), "outputs": list(self.outputs), "states": states}
+        time = {} if self.dt is None else {"dt": self.dt}
+        return control.ss(self.A, self.B, self.C, self.D, **time, **names)
+
+
+def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
+    """Return a list of names as a tuple; a name alone is none."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise TypeError(f"{argument} = {given!r}: must be a list of names, such as [{given!r}]")
+    return tuple(given)
+
+
+@lru_cache
+def known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
+    """Return inputs as the core takes them, a torque by its joint, and their names."""
+    given: list[int | str] = []
+    for one in inputs:
+        place = _TORQUE.fullmatch(one) if isinstance(one, str) else None
+        if place is not None:
+            given.append(int(place[1]))
+        else:
+            given.append(one if isinstance(one, str) else whole_number("inputs", one))
+    return tuple(given), tuple(one if isinstance(one, str) else f"torque[{one}]" for one in given)
+
+
+@lru_cache
+def state_as_output(n: int, inputs: int) -> tuple[Floats, Floats, tuple[str, ...]]:
+    """Return C, D and the names where the outputs are the state."""
+    C, D = np.eye(2 * n), np.zeros((2 * n, inputs))
+    C.flags.writeable = D.flags.writeable = False
+    return C, D, tuple(f"{kind}[{i}]" for kind in ("q", "qd") for i in range(1, n + 1))
+
+
+def output_rows(
+    system: Linearization, lengths: Floats, ends: Floats, ends_by: Floats, outputs: tuple[str, ...]
+) -> tuple[Floats, Floats, Floats]:
+    """Return C, D and the values of outputs at the state of a system whose outputs are the state.
+
+    ``ends`` are x, y, vx and vy of the ends of the links, (4, n), and ``ends_by`` their derivatives
+    by the inputs, (4, n, k).
+    """
+    n = len(lengths)
+    q, qd = np.split(system.x, 2)
+    on_q, on_qd = np.split(np.eye(2 * n), 2)
+    on_qdd, by_input = system.A[n:], system.B[n:]
+    # u = (cos q, sin q) along each link; the end of link i moves with all links up to i.
+    up_to = np.tri(n) * lengths
+    along_x, along_y = up_to * np.cos(q), up_to * np.sin(q)
+    joint = np.eye(n) - np.eye(n, k=-1)
+    none = np.zeros_like(by_input)
+    kinds = {
+        "q": (q, on_q, none),
+        "qd": (qd, on_qd, none),
+        "qdd": (system.drift[n:], on_qdd, by_input),
+        "phi": (joint @ q, joint @ on_q, none),
+        "phid": (joint @ qd, joint @ on_qd, none),
+        "x": (ends[0], -along_y @ on_q, ends_by[0]),
+        "y": (ends[1], along_x @ on_q, ends_by[1]),
+        "vx": (ends[2], -(along_x * qd) @ on_q - along_y @ on_qd, ends_by[2]),
+        "vy": (ends[3], -(along_y * qd) @ on_q + along_x @ on_qd, ends_by[3]),
+    }
+    C, D = np.zeros((len(outputs), 2 * n)), np.zeros((len(outputs), by_input.shape[1]))
+    there = np.zeros(len(outputs))
+    for row, name in enumerate(outputs):
+        place = _OUTPUT.fullmatch(name) if isinstance(name, str) else None
+        if place is None or not 1 <= int(place[2]) <= n:
+            known = [f"{kind}[{i}]" for kind in kinds for i in range(1, n + 1)]
+            raise ValueError(f"outputs: {name!r} is none: {did_you_mean(str(name), known)}")
+        there[row], C[row], D[row] = (each[int(place[2]) - 1] for each in kinds[place[1]])
+    return C, D, there
+
+
+def derivative(
+    function: Callable[[Mapping[str, float]], Floats], name: str, value: float
+) -> Floats:
+    """Return the derivative of a smooth function by a parameter, to some 13 digits.
+
+    Central differences are extrapolated, as Richardson does.
+    """
+    steps = [(abs(value) / 16 or 1.0) / 2**k for k in range(4)]
+    found = [(function({name: value + h}) - function({name: value - h})) / (2 * h) for h in steps]
+    for level in range(1, len(steps)):
+        found = [after + (after - before) / (4**level - 1) for before, after in pairwise(found)]
+    best: Floats = found[0]
+    return best

@@ -1,0 +1,382 @@
+"""Linear systems agree with the reference's, differentiated in many digits, or are refused.
+
+As in test_jacobian.py, the reference is differentiated by central differences in eighty digits. The
+issue is what a controller sees, so an error is a share of the largest entry of (A, B).
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pendcore as pc
+import pytest
+from described_scenes import scene_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from reference.arithmetic import multiple_precision
+from reference.effects import law
+from reference.instant import Instant
+from reference.loads import Loads
+from reference.newton_euler import uniform_rod
+from reference.random_rigs import DrawnRig, rigs
+from reference.rig import Law, Rig
+from sweeps import random_examples
+
+MANY = multiple_precision(80)
+STEP = MANY.number(10) ** -30
+SMOOTH = sorted(
+    set(pc.effects.kinds()) - {"user", "compiled_user", "joint_stop", "lock", "dry_joint_friction"}
+)
+UPRIGHT = (-np.pi / 2, -np.pi / 2)
+TEXTBOOK = pc.Scene.textbook()
+E = pc.effects
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pushed(Law):
+    """Torques in the joints, and an acceleration of the pivot."""
+
+    torques: Sequence[Any]
+    pivot_x: Any = 0
+    pivot_y: Any = 0
+
+    def act(self, instant: Instant, loads: Loads) -> None:
+        for joint, torque in enumerate(self.torques, 1):
+            loads.couple_at_joint(joint, torque)
+        x, y = loads.pivot_acceleration
+        loads.pivot_acceleration = (x + self.pivot_x, y + self.pivot_y)
+
+
+def moved(drawn: DrawnRig, name: str, by: Any) -> Rig:
+    """The reference's rig, with one number of the scene changed."""
+    bodies, gravity, described, _ = drawn
+    described = copy.deepcopy(described)
+    links = [list(map(MANY.number, body)) for body in bodies]
+    g = MANY.number(gravity)
+    if name == "gravity":
+        g += by
+    elif name.startswith("link"):
+        i, field = re.fullmatch(r"link\[(\d+)\]\.(\w+)", name).groups()  # type: ignore[union-attr]
+        link, body = links[int(i) - 1], bodies[int(i) - 1]
+        link[body._fields.index(field)] += by
+        if field in ("mass", "length"):  # a uniform rod stays one, in each of these
+            rod = uniform_rod(body.mass, body.length)
+            of_rod = uniform_rod(*link[:2])
+            link[2:] = [
+                b if a == c else x
+                for a, c, b, x in zip(body[2:], rod[2:], of_rod[2:], link[2:], strict=True)
+            ]
+    else:
+        i, path = re.fullmatch(r"effect\[(\d+)\]\.(.+)", name).groups()  # type: ignore[union-attr]
+        owner: Any = described[int(i) - 1][1]
+        *parts, last = path.split(".")
+        if parts == ["wind"]:
+            wind = list(owner.get("wind", (0.0, 0.0)))
+            k = "xy".index(last)
+            wind[k] = MANY.number(wind[k]) + by
+            owner["wind"] = tuple(wind)
+        else:
+            for part in parts:
+                owner = owner[part]
+            start = owner[last] if last in owner else float(DEFAULTS[last])
+            owner[last] = MANY.number(start) + by
+    made = [type(bodies[0])(*one) for one in links]
+    return Rig(bodies=made, gravity=g, effects=[law(one) for one in described], arithmetic=MANY)
+
+
+DEFAULTS = {
+    "limit": math.inf,
+    "air_density": 1.225, "phase": 0.0, "rest_angle": 0.0, "damping2": 0.0, "damping3": 0.0,
+    "inertia": 0.0, "stribeck_velocity": 0.1, "exponent": 2.0,
+}  # fmt: skip
+
+
+def accelerations(rig: Rig, drawn: DrawnRig, pushed: Pushed | None = None) -> list[Any]:
+    t, q, qd = drawn[3]
+    effects = [*rig.effects, *([pushed] if pushed else [])]
+    acted = Rig(bodies=rig.bodies, gravity=rig.gravity, effects=effects, arithmetic=MANY)
+    return acted.motion(MANY.number(t), list(map(MANY.number, q)), list(map(MANY.number, qd)))[0]
+
+
+def slope(ahead: Sequence[Any], behind: Sequence[Any]) -> NDArray[np.float64]:
+    return np.array([float((a - b) / (2 * STEP)) for a, b in zip(ahead, behind, strict=True)])
+
+
+def exact_columns(drawn: DrawnRig, names: Sequence[str]) -> NDArray[np.float64]:
+    """D qdd / d input, (n, k), from the reference."""
+    n, plain = len(drawn[0]), moved(drawn, "gravity", 0)
+    columns = []
+    for name in names:
+        if name.startswith("torque"):
+            one = [STEP * (name == f"torque[{j}]") for j in range(1, n + 1)]
+            sides = [Pushed(torques=[sign * x for x in one]) for sign in (1, -1)]
+            columns.append(slope(*(accelerations(plain, drawn, side) for side in sides)))
+        elif name.startswith("pivot"):
+            pushes = [{f"pivot_{name[-1]}": sign * STEP} for sign in (1, -1)]
+            sides = [Pushed(torques=[0] * n, **push) for push in pushes]
+            columns.append(slope(*(accelerations(plain, drawn, side) for side in sides)))
+        else:
+            rigs_of = [moved(drawn, name, sign * STEP) for sign in (1, -1)]
+            columns.append(slope(*(accelerations(rig, drawn) for rig in rigs_of)))
+    return np.array(columns).T
+
+
+def check(drawn: DrawnRig, tolerance: float = 1e-12) -> None:
+    bodies, gravity, described, (t, q, qd) = drawn
+    n, scene = len(bodies), scene_of(bodies, gravity, described)
+    tables = {f"effect[{i}].limit" for i, (_, told) in enumerate(described, 1) if "table" in told}
+    parameters = [name for name in scene.parameters() if name not in tables]
+    inputs = [*(f"torque[{j}]" for j in range(1, n + 1)), "pivot.x", "pivot.y", *parameters]
+    found = scene.linearize(q, qd, t, inputs=inputs)
+    assert found.inputs == tuple(inputs)
+    np.testing.assert_array_equal(found.drift, [*qd, *scene.accelerations(t, q, qd)])
+    np.testing.assert_array_equal(found.A[n:], np.hstack(scene.jacobian(t, q, qd)))
+    np.testing.assert_array_equal(found.A[:n], np.eye(n, 2 * n, k=n))
+    exact = exact_columns(drawn, inputs)
+    assert not found.B[:n].any()
+    for column, (name, right) in enumerate(zip(inputs, exact.T, strict=True)):
+        size = max(np.abs(found.A).max(), np.abs(right).max())
+        assert np.abs(found.B[n:, column] - right).max() <= tolerance * size, name
+
+
+@pytest.mark.parametrize("kind", SMOOTH)
+def test_each_effect_alone(kind: str) -> None:
+    @settings(max_examples=random_examples(6), deadline=None)
+    @given(rigs([kind], st.sampled_from([1, 2, 3])))
+    def check_one(drawn: DrawnRig) -> None:
+        check(drawn)
+
+    check_one()
+
+
+def test_all_smooth_effects_together() -> None:
+    @settings(max_examples=random_examples(12), deadline=None)
+    @given(rigs([*SMOOTH, "dry_joint_friction"], st.integers(1, 6)))
+    def check_one(drawn: DrawnRig) -> None:
+        check(drawn)
+
+    check_one()
+
+
+def test_outputs_are_what_they_are_called() -> None:
+    n, t, step = 3, 0.3, 1e-6
+    wave = E.Sinusoid(amplitude=0.2, angular_frequency=5.0)
+    links = [pc.Link(mass=1.0, length=length) for length in (1.0, 0.7, 0.4)]
+    scene = pc.Scene(links=links, effects=[E.DrivenPivot(x=wave)])
+    q, qd = np.array([0.3, -0.8, 1.1]), np.array([1.0, -2.0, 0.5])
+    kinds = ("q", "qd", "qdd", "phi", "phid", "x", "y", "vx", "vy")
+    names = [f"{kind}[{i}]" for kind in kinds for i in range(1, n + 1)]
+
+    def values(q: Any, qd: Any, torque: float = 0.0, **changed: float) -> Any:
+        driven = scene.replace(effects=[*scene.effects, E.Motor(joint=2, constant=torque)])
+        driven = driven.with_parameters(changed)
+        ends, speeds = driven.positions(t, q)[1:], driven.velocities(t, q, qd)[1:]
+        phi, phid = np.diff(q, prepend=0.0), np.diff(qd, prepend=0.0)
+        return np.hstack([q, qd, driven.accelerations(t, q, qd), phi, phid, *ends.T, *speeds.T])
+
+    changes = {"link[1].length": 1.0, "effect[1].x.amplitude": 0.2}
+    found = scene.linearize(q, qd, t, inputs=[2, *changes], outputs=names)
+    assert found.outputs == tuple(names)
+    np.testing.assert_allclose(found.outputs_there, values(q, qd), rtol=1e-14)
+    moves = [np.split(step * row, 2) for row in np.eye(2 * n)]
+    C = [(values(q + a, qd + b) - values(q - a, qd - b)) / (2 * step) for a, b in moves]
+    np.testing.assert_allclose(found.C, np.transpose(C), rtol=0, atol=1e-7)
+    D = (values(q, qd, step) - values(q, qd, -step)) / (2 * step)
+    np.testing.assert_allclose(found.D[:, 0], D, rtol=0, atol=1e-7)
+    for column, (name, value) in enumerate(changes.items(), 1):
+        sides = [values(q, qd, **{name: value + sign * step}) for sign in (1, -1)]
+        D = (sides[0] - sides[1]) / (2 * step)
+        np.testing.assert_allclose(found.D[:, column], D, rtol=0, atol=1e-6, err_msg=name)
+
+
+@pytest.mark.parametrize("dt", [1e-4, 0.01, 0.5])
+def test_discrete_systems_are_the_exact_solution(dt: float) -> None:
+    damper = E.ViscousJoint(joint=2, damping=0.3)
+    scene = TEXTBOOK.replace(effects=[damper])
+    system = scene.linearize([0.4, -1.0], [1.0, 2.0], inputs=[1, 2])
+    found = system.discretize(dt)
+    with mpmath.workdps(40):
+        both = mpmath.zeros(7)
+        for i in range(4):
+            for j, x in enumerate((*system.A[i], *system.B[i], system.drift[i])):
+                both[i, j] = x
+        exact = np.array((mpmath.expm(both * dt))[:4, :].tolist(), dtype=float)
+    got = np.column_stack([found.A, found.B, found.drift])
+    np.testing.assert_allclose(got, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
+    assert found.dt == dt
+    with pytest.raises(ValueError, match="the system is discrete"):
+        found.discretize(dt)
+
+
+def test_python_control_takes_the_system_with_its_names() -> None:
+    control = pytest.importorskip("control")
+    system = TEXTBOOK.linearize(UPRIGHT, inputs=[1, "gravity"], outputs=["x[2]", "qdd[1]"])
+    found = system.to_control()
+    assert found.input_labels == ["torque[1]", "gravity"]
+    assert found.output_labels == ["x[2]", "qdd[1]"]
+    assert found.state_labels == ["q[1]", "q[2]", "qd[1]", "qd[2]"]
+    for name in "ABCD":
+        np.testing.assert_array_equal(getattr(found, name), getattr(system, name))
+    discrete = control.c2d(found, 0.01)
+    exact = system.discretize(0.01).to_control()
+    assert exact.dt == 0.01
+    np.testing.assert_allclose(exact.A, discrete.A, rtol=1e-12)
+    np.testing.assert_allclose(exact.B, discrete.B, rtol=1e-11, atol=1e-15)
+    with pytest.raises(ValueError, match=r"drift = .* the state moves without input"):
+        TEXTBOOK.linearize([0.3, 0.4], inputs=[1]).to_control()
+
+
+REFUSED: dict[str, tuple[Any, tuple[float, ...], tuple[float, ...], float, str]] = {
+    "stop": (E.JointStop(joint=1, range=(-1, 1)), (1.0, 0.0), (0.0, 0.0), 0.0, "an end of its"),
+    "stuck": (
+        E.DryJointFriction(joint=2, coulomb=0.3), (1.0, 0.0), (1.0, 1.0), 0.0, "joint 2 is at rest",
+    ),
+    "limit": (
+        E.Motor(joint=1, pd=E.PD(kp=2.0, kd=0.0, reference=0.0), limit=2.0),
+        (1.0, 0.0), (0.0, 0.0), 0.0, "two of its laws meet",
+    ),
+    "step of a table": (
+        E.Motor(joint=1, table=E.Table(t=(0, 1, 2), torque=(1, 3, 2), hold=True)),
+        (1.0, 0.0), (0.0, 0.0), 1.0, "jumps at t = 1.0 s",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_no_derivative_is_refused_by_name(name: str) -> None:
+    effect, q, qd, t, told = REFUSED[name]
+    scene = TEXTBOOK.replace(effects=[E.Payload(mass=1.0), effect])
+    with pytest.raises(ValueError, match=rf"effect 2 \(\w+\): .*{re.escape(told)}"):
+        scene.linearize(q, qd, t)
+    # On either side there is one.
+    for sign in (-1, 1):
+        if name == "stop" and sign > 0:
+            continue
+        aside = np.multiply(sign, (1e-3, 0.0))
+        found = scene.linearize(q + aside, np.add(qd, aside), t + sign * 1e-3)
+        assert np.all(np.isfinite(found.A))
+
+
+def test_where_laws_meet_alike_there_is_a_derivative() -> None:
+    table = E.Motor(joint=1, table=E.Table(t=(0, 1, 2), torque=(1, 3, 2)))
+    square = E.ViscousJoint(joint=1, damping=0.1, damping2=0.5)
+    found = TEXTBOOK.replace(effects=[table, square]).linearize(UPRIGHT, 0.0, 1.0)
+    motor, damper = E.Motor(joint=1, constant=3.0), E.ViscousJoint(joint=1, damping=0.1)
+    plain = TEXTBOOK.replace(effects=[motor, damper]).linearize(UPRIGHT)
+    np.testing.assert_allclose(found.A, plain.A, rtol=1e-14)
+    np.testing.assert_allclose(found.drift, plain.drift, rtol=1e-13)
+
+
+def test_slopes_of_a_corner_are_told_apart() -> None:
+    """At a limit, one side has the slopes of the law, the other those of a constant torque."""
+    held = E.Motor(joint=1, pd=E.PD(kp=2.0, kd=0.0, reference=0.0), limit=2.0)
+    scene = TEXTBOOK.replace(effects=[held])
+    inside, beyond = (scene.linearize([1.0 + by, 0.5]).A[2, 0] for by in (-1e-9, 1e-9))
+    spring = TEXTBOOK.replace(effects=[E.TorsionalSpring(joint=1, stiffness=2.0)])
+    assert inside == pytest.approx(spring.linearize([1.0, 0.5]).A[2, 0], rel=1e-8)
+    constant = TEXTBOOK.replace(effects=[E.Motor(joint=1, constant=-2.0)])
+    assert beyond == pytest.approx(constant.linearize([1.0, 0.5]).A[2, 0], rel=1e-8)
+    assert abs(inside - beyond) > 1
+
+
+def test_a_locked_joint_takes_no_torque() -> None:
+    scene = TEXTBOOK.replace(effects=[E.Lock(joint=2)])
+    with pytest.raises(ValueError, match="torque in joint 2: a Lock holds this joint"):
+        scene.linearize(UPRIGHT, inputs=[2])
+    found = scene.linearize(UPRIGHT, inputs=[1])
+    one = pc.Scene(links=[pc.Link(mass=2.0, length=2.0)]).linearize(UPRIGHT[:1], inputs=[1])
+    np.testing.assert_allclose(found.B[2:, 0], one.B[1, 0], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"inputs": ["torqe[1]"]}, 'parameter "torqe\\[1\\]": the scene has none of that name'),
+        ({"inputs": ["link[3].mass"]}, "it has 2 links"),
+        ({"inputs": [3]}, "torque in joint 3: must be one of the joints 1 to 2"),
+        ({"inputs": [0]}, "torque in joint 0: must be one of"),
+        ({"outputs": ["q[3]"]}, r"outputs: 'q\[3\]' is none: did you mean 'q\[2\]'"),
+        ({"q": [1.0, np.nan]}, r"q\[1\] = nan: must be finite"),
+        ({"q": [1.0, 2.0, 3.0]}, r"q: shape \(3,\): must be \(2,\)"),
+        ({"t": np.inf}, "t = inf: must be finite"),
+    ],
+)
+def test_bad_input(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(ValueError, match=told):
+        TEXTBOOK.linearize(**({"q": UPRIGHT} | given))
+
+
+def test_one_text_is_no_list_of_inputs() -> None:
+    with pytest.raises(TypeError, match=r"inputs = 'pivot\.x': must be a list"):
+        TEXTBOOK.linearize(UPRIGHT, inputs="pivot.x")
+    with pytest.raises(TypeError, match="inputs = 1: must be a list"):
+        TEXTBOOK.linearize(UPRIGHT, inputs=1)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"outputs = 'q\[1\]': must be a list"):
+        TEXTBOOK.linearize(UPRIGHT, outputs="q[1]")
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+def test_inverse_dynamics_give_the_wanted_accelerations(n: int) -> None:
+    @settings(max_examples=random_examples(20), deadline=None)
+    @given(rigs([*SMOOTH, "user", "dry_joint_friction"], st.just(n)), st.randoms())
+    def check_one(drawn: DrawnRig, random: Any) -> None:
+        bodies, gravity, described, (t, q, qd) = drawn
+        scene = scene_of(bodies, gravity, described)
+        wanted = [random.uniform(-9, 9) for _ in range(n)]
+        torques = scene.inverse_dynamics(t, q, qd, wanted)
+        pushed = Pushed(torques=list(map(MANY.number, torques)))
+        got = np.array(accelerations(moved(drawn, "gravity", 0), drawn, pushed), dtype=float)
+        M = scene.mass_matrix(q)
+        size = np.abs(torques).max() + np.abs(M @ scene.accelerations(t, q, qd)).max()
+        assert np.abs(M @ (got - wanted)).max() <= 1e-12 * (size + np.abs(M).sum() * 9)
+
+    check_one()
+
+
+def test_inverse_dynamics_of_resting_friction_and_of_arrays() -> None:
+    scene = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=2.0, static=3.0)])
+    at_rest = scene.inverse_dynamics(0.0, [0.0, 0.0], [0.0, 0.0], [0.0, 0.0])
+    np.testing.assert_array_equal(at_rest, TEXTBOOK.inverse_dynamics(0, [0, 0], [0, 0], [0, 0]))
+    many = scene.inverse_dynamics([0.0, 1.0], np.zeros((3, 1, 2)), [1.0, 0.0], [0.0, 0.0])
+    assert many.shape == (3, 2, 2)
+    # sliding, it wants two more: the coulomb friction far from Stribeck's peak
+    assert many[0, 0, 0] - TEXTBOOK.inverse_dynamics(0, [0, 0], [1, 0], [0, 0])[0] == 2.0
+
+
+def test_trim_holds_these_angles() -> None:
+    q = [0.3, -0.8]
+    torques = TEXTBOOK.trim(q, inputs=[1, "torque[2]"])
+    motors = [E.Motor(joint=j, constant=x) for j, x in zip((1, 2), torques, strict=True)]
+    held = TEXTBOOK.replace(effects=motors).accelerations(0.0, q, [0.0, 0.0])
+    np.testing.assert_allclose(held, 0.0, atol=1e-13)
+    weight = 9.807 * np.cos(q)
+    np.testing.assert_allclose(torques, [-1.5 * weight[0] - 0.5 * weight[1], -0.5 * weight[1]])
+
+
+@pytest.mark.parametrize(
+    ("effects", "rests"),
+    [
+        ([], False),
+        ([E.DryJointFriction(joint=2, coulomb=4.9)], False),
+        ([E.DryJointFriction(joint=2, coulomb=4.91)], True),
+        ([E.Lock(joint=2)], True),
+        ([E.JointStop(joint=2, range=(-1, 0))], True),
+        ([E.JointStop(joint=2, range=(0, 1))], False),
+        ([E.TorsionalSpring(joint=2, stiffness=4.9035, rest_angle=-1.0)], True),
+    ],
+)
+def test_trim_knows_what_holds_the_other_joints(effects: list[Any], rests: bool) -> None:
+    scene = TEXTBOOK.replace(effects=effects)
+    if rests:
+        assert scene.trim([0.0, 0.0], inputs=[1]) == pytest.approx([-2 * 9.807])
+        return
+    with pytest.raises(ValueError, match=r"do not rest: joint 2 takes -4\.9035 N m, which nothing"):
+        scene.trim([0.0, 0.0], inputs=[1])
