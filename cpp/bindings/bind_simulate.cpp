@@ -1,12 +1,12 @@
 #include <memory>
 #include <utility>
 
-#include "analysis/defect_correction.hpp"
 #include "bind_options.hpp"
 #include "kind_and_values.hpp"
 #include "pendcore/simulate.hpp"
 #include "python_monitor.hpp"
 #include "simulate/checked_options.hpp"
+#include "simulate/step_watch.hpp"
 #include "start.hpp"
 
 namespace pendcore::bindings {
@@ -14,16 +14,16 @@ namespace {
 
 std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0, py::handle qd0,
                                   py::handle t0, py::handle t_end, const py::dict& given,
-                                  py::handle progress, py::handle warn, py::handle correction) {
+                                  py::handle progress, py::handle warn, py::handle watch) {
   const auto& scene = python_scene.cast<const Scene&>();
   PythonMonitor monitor(progress);
   Options options = options_of(given, scene.links.size());
   options.monitor = monitor.for_core();
   // As a pointer, None takes pybind11 a microsecond: it looks for a foreign class first.
-  if (!correction.is_none()) {
-    auto& watch = correction.cast<DefectCorrection&>();
-    watch.keep(options.store.value_or(usual_store(options)), options.t_eval);
-    options.watch = &watch;
+  if (!watch.is_none()) {
+    auto& keeping = watch.cast<KeepingWatch&>();
+    keeping.keep(options.store.value_or(usual_store(options)), options.t_eval);
+    options.watch = &keeping;
   }
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);
   py::object event_functions;
@@ -46,7 +46,7 @@ std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0,
 void bind_simulate(py::module_& module) {
   module.def("simulate", &simulate_run, py::arg("scene"), py::arg("q0"), py::arg("qd0"),
              py::arg("t0"), py::arg("t_end"), py::arg("options"), py::arg("progress"),
-             py::arg("warn"), py::arg("correction") = py::none());
+             py::arg("warn"), py::arg("watch") = py::none());
 }
 
 }  // namespace pendcore::bindings

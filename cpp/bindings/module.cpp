@@ -9,7 +9,7 @@ void bind_scene(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_options(pybind11::module_& module);
 void bind_simulate(pybind11::module_& module);
-void bind_defect_correction(pybind11::module_& module);
+void bind_watches(pybind11::module_& module);
 void bind_lyapunov(pybind11::module_& module);
 void bind_methods(pybind11::module_& module);
 void bind_ensemble(pybind11::module_& module);
@@ -31,7 +31,7 @@ PYBIND11_MODULE(_core, module, pybind11::mod_gil_not_used()) {
   bind_scene(module);
   bind_run(module);
   bind_options(module);
-  bind_defect_correction(module);
+  bind_watches(module);
   bind_simulate(module);
   bind_lyapunov(module);
   bind_methods(module);

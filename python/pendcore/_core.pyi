@@ -83,10 +83,16 @@ def simulate(
     options: Mapping[str, Any],
     progress: Callable[[float], object] | None,
     warn: Callable[[str], object],
-    correction: DefectCorrection | None = None,
+    watch: Watch | None = None,
 ) -> Run: ...
 
-class DefectCorrection:
+class Watch: ...
+
+class Sensitivities(Watch):
+    values: Final[_Floats]
+    def __init__(self, scene: Scene, names: list[str]) -> None: ...
+
+class DefectCorrection(Watch):
     def __init__(
         self, neighbours: Sequence[tuple[Scene, npt.ArrayLike, Sequence[int]]]
     ) -> None: ...

@@ -4,7 +4,7 @@
 
     pendcore.options.OPTIONS["rtol"].default
 
-The core has a descriptor of each option that it knows (cpp/include/pendcore/options.hpp); the three
+The core has a descriptor of each option that it knows (cpp/include/pendcore/options.hpp); the four
 that only Python knows stand here. The signature and docstring of `pendcore.simulate`, the checks of
 cases, and the tables in the documentation are made from them.
 """
@@ -48,6 +48,7 @@ class RunKeywords(TypedDict, total=False):
     ledger: bool
     compensated: bool
     error: float | None
+    sensitivities: Iterable[str]
     on_failure: OnFailure
     progress: Progress
 
@@ -99,6 +100,16 @@ ERROR = RunOption(
     range="> 0 and < 1",
     if_none="no error is verified",
 )
+SENSITIVITIES = RunOption(
+    "sensitivities",
+    "Iterable[str]",
+    'Names of what the run depends on: ``"q0[1]"``, ``"qd0[2]"``, or any of '
+    "`Scene.parameters`. ``sol.sensitivities`` has the derivatives of the states by them, from the "
+    "variational equations along the run. Not with dry friction, stops or locks, nor with "
+    "``error``.",
+    type="iterable of str",
+    if_none="no derivatives are found",
+)
 ON_FAILURE = RunOption(
     "on_failure",
     "OnFailure",
@@ -116,7 +127,13 @@ PROGRESS = RunOption(
 )
 OPTIONS = {
     one.name: one
-    for one in (*(RunOption(**one) for one in _core.run_options()), ERROR, ON_FAILURE, PROGRESS)
+    for one in (
+        *(RunOption(**one) for one in _core.run_options()),
+        ERROR,
+        SENSITIVITIES,
+        ON_FAILURE,
+        PROGRESS,
+    )
 }
 """By name, in the order of the signature."""
 RUN_DEFAULTS = {name: option.default for name, option in OPTIONS.items()}

@@ -127,7 +127,7 @@ class Motor(Law):
 
     def terms(self, instant: Instant) -> list[Number]:
         wanted, limit = self.wanted(instant), instant.arithmetic.number(self.limit)
-        if abs(sum(wanted)) > limit:
+        if abs(sum(wanted)) > abs(limit):
             return [limit if sum(wanted) > 0 else -limit]
         return wanted
 

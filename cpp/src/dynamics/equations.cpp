@@ -90,7 +90,8 @@ Vector Equations::inverse_dynamics(double t, const Numbers& q, const Numbers& qd
     const bool can_stick = effect.holding_torque().has_value();
     if (can_stick && relative(qd.data(), effect.joint()) == 0.0) modes[i] = 0;
   }
-  const std::vector<double> all = torques_of_motion(mechanism(scene, modes), t, q, qd, qdd);
+  const std::vector<double> all =
+      InverseDynamics<double>().torques(mechanism(scene, modes), t, q, qd, qdd);
   Vector torques = View(all.data(), q.size());
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const std::optional<UserLaw> user = scene.effects[i]->user_law(modes[i]);

@@ -5,40 +5,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "arithmetic/epsilon.hpp"
 #include "arithmetic/sine_cosine.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
-#include "dynamics/row.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/parameters.hpp"
 
 namespace pendcore {
-/// What laws see of one link or joint (effects/laws.hpp).
-template <class Number>
-struct LinkAt {
-  using Value = Number;
-  double t;
-  Number q, qd, s, c, L;
-  Number angle, rate;               ///< of the joint
-  Number vx_of_joint, vy_of_joint;  ///< m/s
-
-  const Number& phi() const { return angle; }
-  const Number& phid() const { return rate; }
-  const Number& length() const { return L; }
-  const Number& vx() const { return vx_of_joint; }
-  const Number& vy() const { return vy_of_joint; }
-};
-
-/// A vector in the plane.
-template <class Number>
-struct Planar {
-  Number x{}, y{};
-
-  friend Planar operator+(const Planar& a, const Planar& b) { return {a.x + b.x, a.y + b.y}; }
-  friend Planar operator-(const Planar& a, const Planar& b) { return {a.x - b.x, a.y - b.y}; }
-  friend Planar operator*(const Number& k, const Planar& a) { return {k * a.x, k * a.y}; }
-};
-
 namespace {
 
 /// All numbers of a mechanism, in one order.
@@ -109,6 +83,35 @@ void require_same_pieces(const Scene& scene, const Scene& changed, const std::ve
   }
 }
 
+/// The slope of a function of one number, from its values at steps h, h/2, h/4 and h/8 to either
+/// side, and `here`: central differences, extrapolated as Richardson does. Nothing where a
+/// corner lies among the values, or at the value itself: one-sided slopes then differ by as much at
+/// half the step, and central differences do not settle.
+constexpr int steps_of_slope = 4;
+std::optional<double> slope_of(double here, const std::array<double, steps_of_slope>& ahead,
+                               const std::array<double, steps_of_slope>& behind, double h) {
+  std::array<double, steps_of_slope> slope, gap;
+  for (int k = 0; k < steps_of_slope; ++k, h *= 0.5) {
+    slope[k] = (ahead[k] - behind[k]) / (2.0 * h);
+    gap[k] = std::abs((ahead[k] - here) - (here - behind[k])) / h;
+  }
+  const double rounding = 64.0 * epsilon * std::abs(here) / h;
+  double weight = 4.0;
+  double without_largest_step = 0.0;
+  for (int level = 1; level < steps_of_slope; ++level, weight *= 4.0) {
+    without_largest_step = slope.back();
+    for (int k = steps_of_slope - 1; k >= level; --k) {
+      slope[k] += (slope[k] - slope[k - 1]) / (weight - 1.0);
+    }
+  }
+  // For a smooth function that changes by as much as itself, these differ by 2^-36 of it.
+  const double difference = std::abs(slope.back() - without_largest_step);
+  const bool settles = difference <= 0x1p-33 * std::abs(slope.back()) + rounding;
+  const bool is_smooth = gap[3] <= 0.7 * gap[2] + rounding;
+  if (!settles || !is_smooth) return std::nullopt;
+  return slope.back();
+}
+
 }  // namespace
 
 std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
@@ -162,49 +165,55 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
     for (const double* each : numbers_of(there)) result.push_back(*each);
     return result;
   };
-  // Richardson's extrapolation of central differences with steps h, h/2, h/4 and h/8.
-  constexpr int levels = 4;
-  // A limit that is infinite stays so, and none of its neighbours matters.
-  double h = value == 0.0 || std::isinf(value) ? 1.0 : 0x1p-4 * std::abs(value);
-  std::array<std::vector<double>, levels> slopes;
-  for (std::vector<double>& slope : slopes) {
-    slope = numbers_at(value + h);
-    const std::vector<double> before = numbers_at(value - h);
-    for (std::size_t i = 0; i < slope.size(); ++i) {
-      slope[i] = (slope[i] - before[i]) / (std::isinf(value) ? never : (value + h) - (value - h));
+  std::vector<double> slopes(numbers.size());
+  const auto take_slopes = [&](double h) {
+    std::array<std::vector<double>, steps_of_slope> ahead, behind;
+    for (int k = 0; k < steps_of_slope; ++k) {
+      ahead[k] = numbers_at(value + std::ldexp(h, -k));
+      behind[k] = numbers_at(value - std::ldexp(h, -k));
     }
-    h *= 0.5;
-  }
-  double weight = 4.0;
-  for (int level = 1; level < levels; ++level, weight *= 4.0) {
-    for (int k = levels - 1; k >= level; --k) {
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        slopes[k][i] += (slopes[k][i] - slopes[k - 1][i]) / (weight - 1.0);
-      }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto slope = slope_of(*numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
+                                  {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h);
+      if (!slope) return false;
+      slopes[i] = *slope;
     }
+    return true;
+  };
+  // An infinite limit stays so, and changes nothing. The steps are powers of two, so that they are
+  // exact, and shrink where a corner is near.
+  double h = value == 0.0 ? 1.0 : std::ldexp(1.0, std::ilogb(value) - 4);
+  const double smallest = 0x1p-20 * h;
+  while (std::isfinite(value) && !take_slopes(h)) {
+    h *= 0x1p-4;
+    if (h >= smallest) continue;
+    throw std::invalid_argument("parameter \"" + parameter +
+                                "\": a law has a corner at this value: there is no derivative by "
+                                "it; it has one at a slightly larger or smaller value");
   }
   Mechanism<Dual<double>> result = with_slopes(here);
   const std::vector<Dual<double>*> duals = numbers_of(result);
   for (std::size_t i = 0; i < duals.size(); ++i) {
-    *duals[i] = {*numbers[i], slopes[levels - 1][i]};
+    *duals[i] = {*numbers[i], slopes[i]};
   }
   return result;
 }
 
 template <class Number>
-std::vector<Number> torques_of_motion(const Mechanism<Number>& mechanism, double t,
-                                      const Numbers& q, const Numbers& qd, const Numbers& qdd) {
+const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Number>& mechanism,
+                                                            double t, const Numbers& q,
+                                                            const Numbers& qd, const Numbers& qdd) {
   using Vector2 = Planar<Number>;
   const auto n = static_cast<int>(mechanism.bodies.size());
-  std::vector<double> sine(n), cosine(n);
-  pendcore::sine_cosine(q.data(), n, sine.data(), cosine.data());
+  sine_.resize(n);
+  cosine_.resize(n);
+  pendcore::sine_cosine(q.data(), n, sine_.data(), cosine_.data());
 
   // The waves, and the motion of the pivot.
-  std::vector<std::vector<Number>> sines, cosines;
+  waves_.clear();
   Vector2 velocity, acceleration;
   for (const auto& effect : mechanism.effects) {
-    auto& s = sines.emplace_back(std::max<std::size_t>(effect.waves.size(), 1));
-    auto& c = cosines.emplace_back(s.size());
+    auto& [s, c] = waves_.emplace_back();
     for (std::size_t k = 0; k < effect.waves.size(); ++k) {
       const Number angle = t * effect.waves[k].angular_frequency + effect.waves[k].phase;
       sine_cosine(angle, s[k], c[k]);
@@ -215,62 +224,58 @@ std::vector<Number> torques_of_motion(const Mechanism<Number>& mechanism, double
   }
 
   // From the pivot to the tip: where each joint goes, and what it takes to move each link.
-  std::vector<LinkAt<Number>> at;
-  std::vector<Vector2> inertial;  // m (a_C - g e_y)
+  at_.clear();
+  inertial_.clear();
   acceleration.y -= mechanism.gravity;
   for (int i = 0; i < n; ++i) {
     const auto& body = mechanism.bodies[i];
-    at.push_back({.t = t,
-                  .q = q[i],
-                  .qd = qd[i],
-                  .s = sine[i],
-                  .c = cosine[i],
-                  .L = body.length,
-                  .angle = relative(q.data(), i + 1),
-                  .rate = relative(qd.data(), i + 1),
-                  .vx_of_joint = velocity.x,
-                  .vy_of_joint = velocity.y});
-    velocity = velocity + body.length * Vector2{-qd[i] * sine[i], qd[i] * cosine[i]};
+    at_.push_back({.t = t,
+                   .q = q[i],
+                   .qd = qd[i],
+                   .s = sine_[i],
+                   .c = cosine_[i],
+                   .L = body.length,
+                   .angle = relative(q.data(), i + 1),
+                   .rate = relative(qd.data(), i + 1),
+                   .vx_of_joint = velocity.x,
+                   .vy_of_joint = velocity.y});
+    velocity = velocity + body.length * Vector2{-qd[i] * sine_[i], qd[i] * cosine_[i]};
     const double square = qd[i] * qd[i];
-    const Vector2 of_unit_length{-qdd[i] * sine[i] - square * cosine[i],
-                                 qdd[i] * cosine[i] - square * sine[i]};
-    inertial.push_back(body.mass * (acceleration + body.center * of_unit_length));
+    const Vector2 of_unit_length{-qdd[i] * sine_[i] - square * cosine_[i],
+                                 qdd[i] * cosine_[i] - square * sine_[i]};
+    inertial_.push_back(body.mass * (acceleration + body.center * of_unit_length));
     acceleration = acceleration + body.length * of_unit_length;
   }
 
-  std::vector<RowLoads<Number>> loads(n);
+  loads_.assign(n, {});
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e) {
     const auto& [place, couple, law, pivot, waves] = mechanism.effects[e];
     if (couple) {
-      loads[place].couple(couple->torque(t, relative(q.data(), place + 1),
-                                         relative(qd.data(), place + 1), sines[e].front()));
+      loads_[place].couple(couple->torque(t, relative(q.data(), place + 1),
+                                          relative(qd.data(), place + 1), waves_[e].sine[0]));
     } else if (law) {
-      std::visit([&](const auto& one) { one.add(at[place], loads[place]); }, *law);
+      std::visit([&](const auto& one) { one.add(at_[place], loads_[place]); }, *law);
     }
   }
 
   // From the tip to the pivot.
-  std::vector<Number> torques(n);
+  torques_.resize(n);
   Vector2 beyond = mechanism.payload_mass * acceleration;  // F_{i,i+1}
   Number torque = mechanism.payload_inertia * Number(qdd[n - 1]);
   for (int i = n; i-- > 0;) {
     const auto& body = mechanism.bodies[i];
     const auto across = [&](const Vector2& force) {
-      return cosine[i] * force.y - sine[i] * force.x;
+      return cosine_[i] * force.y - sine_[i] * force.x;
     };
-    torque += body.inertia * Number(qdd[i]) + body.center * across(inertial[i]) +
-              body.length * across(beyond) - loads[i].moments;
-    beyond = beyond + inertial[i] - Vector2{loads[i].fx, loads[i].fy};
-    torques[i] = torque + relative(qdd.data(), i + 1) * body.armature - loads[i].couples;
+    torque += body.inertia * Number(qdd[i]) + body.center * across(inertial_[i]) +
+              body.length * across(beyond) - loads_[i].moments;
+    beyond = beyond + inertial_[i] - Vector2{loads_[i].fx, loads_[i].fy};
+    torques_[i] = torque + relative(qdd.data(), i + 1) * body.armature - loads_[i].couples;
   }
-  return torques;
+  return torques_;
 }
 
-template std::vector<double> torques_of_motion(const Mechanism<double>& mechanism, double t,
-                                               const Numbers& q, const Numbers& qd,
-                                               const Numbers& qdd);
-template std::vector<Dual<double>> torques_of_motion(const Mechanism<Dual<double>>& mechanism,
-                                                     double t, const Numbers& q, const Numbers& qd,
-                                                     const Numbers& qdd);
+template class InverseDynamics<double>;
+template class InverseDynamics<Dual<double>>;
 
 }  // namespace pendcore

@@ -12,11 +12,13 @@
 /// thereby d qdd/d p = -M^-1 J^T d tau/d p.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "arithmetic/dual.hpp"
+#include "dynamics/row.hpp"
 #include "effects/laws.hpp"
 #include "pendcore/scene.hpp"
 #include "pendcore/vector.hpp"
@@ -59,10 +61,51 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
 Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
                                         const std::string& parameter);
 
-/// tau, N m, (n), from the angles (rad), rates (rad/s) and accelerations (rad/s^2), (n) each.
-/// Cost: O(n).
+/// What laws see of one link or joint (effects/laws.hpp).
 template <class Number>
-std::vector<Number> torques_of_motion(const Mechanism<Number>& mechanism, double t,
-                                      const Numbers& q, const Numbers& qd, const Numbers& qdd);
+struct LinkAt {
+  using Value = Number;
+  double t;
+  Number q, qd, s, c, L;
+  Number angle, rate;               ///< of the joint
+  Number vx_of_joint, vy_of_joint;  ///< m/s
+
+  const Number& phi() const { return angle; }
+  const Number& phid() const { return rate; }
+  const Number& length() const { return L; }
+  const Number& vx() const { return vx_of_joint; }
+  const Number& vy() const { return vy_of_joint; }
+};
+
+/// A vector in the plane.
+template <class Number>
+struct Planar {
+  Number x{}, y{};
+
+  friend Planar operator+(const Planar& a, const Planar& b) { return {a.x + b.x, a.y + b.y}; }
+  friend Planar operator-(const Planar& a, const Planar& b) { return {a.x - b.x, a.y - b.y}; }
+  friend Planar operator*(const Number& k, const Planar& a) { return {k * a.x, k * a.y}; }
+};
+
+/// The torques of a motion, and memory for them: an object belongs to one thread.
+template <class Number>
+class InverseDynamics {
+ public:
+  /// tau, N m, (n), from the angles (rad), rates (rad/s) and accelerations (rad/s^2), (n) each.
+  /// Cost: O(n).
+  const std::vector<Number>& torques(const Mechanism<Number>& mechanism, double t, const Numbers& q,
+                                     const Numbers& qd, const Numbers& qdd);
+
+ private:
+  struct Waves {
+    std::array<Number, 2> sine{}, cosine{};
+  };
+  std::vector<double> sine_, cosine_;
+  std::vector<Waves> waves_;  ///< of each effect
+  std::vector<LinkAt<Number>> at_;
+  std::vector<Planar<Number>> inertial_;  ///< m (a_C - g e_y)
+  std::vector<RowLoads<Number>> loads_;
+  std::vector<Number> torques_;
+};
 
 }  // namespace pendcore

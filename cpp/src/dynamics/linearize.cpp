@@ -139,7 +139,8 @@ Vector torques_of_parameter(const Scene& scene, const JointForces& forces,
                             const std::string& parameter, double t, const Numbers& q,
                             const Numbers& qd, const Numbers& qdd) {
   const std::vector<int> modes = modes_at(scene, t, q.data(), qd.data());
-  const auto all = torques_of_motion(mechanism_along(scene, modes, t, parameter), t, q, qd, qdd);
+  const auto all = InverseDynamics<Dual<double>>().torques(
+      mechanism_along(scene, modes, t, parameter), t, q, qd, qdd);
   Vector torques(forces.joints.size());
   for (Eigen::Index r = 0; r < torques.size(); ++r) torques[r] = -all[forces.joints[r]].slope;
   return torques;

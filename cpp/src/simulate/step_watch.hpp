@@ -3,6 +3,9 @@
 #pragma once
 
 #include <span>
+#include <vector>
+
+#include "pendcore/options.hpp"
 
 namespace pendcore {
 
@@ -25,6 +28,12 @@ class StepWatch {
   virtual void steps(const WatchedStep& step) = 0;
   /// The state became y at once: at an impact, or at the start.
   virtual void jumps(double t, std::span<const double> y) = 0;
+};
+
+/// A watch that keeps something where the run keeps its states.
+class KeepingWatch : public StepWatch {
+ public:
+  virtual void keep(Store store, const std::vector<double>& t_eval) = 0;
 };
 
 }  // namespace pendcore

@@ -305,7 +305,7 @@ class Trials:
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=warn if self.warns else silent, correction=correction,
+            warn=warn if self.warns else silent, watch=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:

@@ -22,6 +22,7 @@ from pendcore.options import (
     ON_FAILURE,
     OPTIONS,
     RUN_DEFAULTS,
+    SENSITIVITIES,
     RunKeywords,
     require_options,
     with_options,
@@ -112,23 +113,39 @@ def simulate(
         raise no_time_span(t_span) from None
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
+    names = asked.pop("sensitivities", None)
     if error is not None:
         require_options(asked, simulate)
+        if names is not None:
+            raise ValueError(
+                f"sensitivities = {names!r}: not with error: give method, rtol and atol"
+            )
         start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(start, error, asked), on_failure)
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
+    watch = None if names is None else _watch_of(scene, names)
     try:
-        run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn)
+        run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)
     except TypeError:
         require_options(asked, simulate)
         raise
     solution = Solution(scene, run)
+    if watch is not None:
+        solution.sensitivities, solution.sensitivity_names = watch.values, tuple(names)
     if run.success:
         if progress is not None or report.bar is not None:
             close(report)
         return solution
     return checked(completed(solution, report), on_failure)
+
+
+def _watch_of(scene: Scene, names: Iterable[str]) -> _core.Sensitivities:
+    """Return what finds the derivatives by these names."""
+    listed = [] if isinstance(names, str) else [*names]
+    if not listed or not all(isinstance(name, str) for name in listed):
+        raise TypeError(f'sensitivities = {names!r}: must be a list of names, such as ["q0[1]"]')
+    return _core.Sensitivities(scene._compiled, listed)
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:
@@ -143,7 +160,7 @@ def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Sol
     asked = {
         name: options.get(name, option.default)
         for name, option in OPTIONS.items()
-        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR))
+        if not (option.chosen_for_error or option in (ON_FAILURE, ERROR, SENSITIVITIES))
     }
     from pendcore._accuracy.target_error import run_to_error
 

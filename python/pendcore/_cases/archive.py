@@ -1,8 +1,9 @@
 """Solutions on disk: NumPy's npz, readable without pendcore, and without pickle.
 
 Entries: ``t``, ``q``, ``qd``, ``y`` (as in `Solution`), ``case`` (TOML), ``statistics`` (JSON),
-``version``, ``accuracy`` (JSON) and ``error.*`` (how far off it is) where an error was asked for,
-and ``run.*``, from which the whole object comes back: interpolants, and what is needed to resume.
+``version``, ``sensitivities`` and their names, where they were asked for, ``accuracy`` (JSON) and
+``error.*`` (how far off it is) where an error was asked for, and ``run.*``, from which the whole
+object comes back: interpolants, and what is needed to resume.
 """
 
 from __future__ import annotations
@@ -51,6 +52,9 @@ def save(solution: Solution, path: str | os.PathLike[str], *, progress: Progress
         entries["accuracy"] = json.dumps(solution.accuracy.to_dict())
         if (error := solution.known_error) is not None:
             entries |= {_ERROR + one.name: getattr(error, one.name) for one in fields(error)}
+    if solution.sensitivities is not None:
+        entries["sensitivities"] = solution.sensitivities
+        entries["sensitivity_names"] = solution.sensitivity_names
     with reporting(progress, f"writing {os.fspath(path)}") as report:
         state = {_RUN + key: value for key, value in solution._run.__getstate__().items()}
         with whole_file(path) as name, name.open("wb") as file:
@@ -108,6 +112,10 @@ def _loaded(entries: Entries) -> Solution:
     accuracy = None if told is None else Accuracy.from_dict(told)
     verified = ErrorEstimate(**error) if error else None
     solution = Solution(_scene(state), run, case.name, accuracy, verified)
+    if "sensitivities" in entries:
+        solution.sensitivity_names = tuple(map(str, entries["sensitivity_names"]))
+        shape = (*solution.q.shape, len(solution.sensitivity_names))
+        solution.sensitivities = entries["sensitivities"].reshape(shape[0], 2 * shape[1], shape[2])
     if solution.case() != case:
         raise ValueError("its case is not that of its run")
     return solution

@@ -56,20 +56,18 @@ def run(
     *,
     progress: Progress = False,
     warn: Callable[[str], object] = silent,
-    correction: _core.DefectCorrection | None = None,
+    watch: _core.Watch | None = None,
     **options: Any,
 ) -> Solution:
     """Run; the keywords are those of `simulate`, but that ``events`` are the core's.
 
-    ``correction`` looks on and finds the error of the run; see
+    ``watch`` looks on, and finds the error of the run, for example; see
     `pendcore._accuracy.defect_correction`.
     """
     report = callback(progress)
     options |= choice._asdict() | {"t_eval": t_eval}
     scene, q0, qd0, t_start, t_end = start
-    run = _core.simulate(
-        scene._compiled, q0, qd0, t_start, t_end, options, report, warn, correction
-    )
+    run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, options, report, warn, watch)
     return completed(Solution(scene, run), report)
 
 

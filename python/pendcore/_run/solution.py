@@ -61,6 +61,9 @@ class Solution:
         What moved.
     known_error : ErrorEstimate or None
         The error at each time, where `simulate` or `estimate_error` has found it.
+    sensitivities : ndarray, (n_t, 2n, k), or None
+        d(q, qd)/d(name) at each time, for each of the names that ``simulate(sensitivities=...)``
+        was given, which ``sensitivity_names`` has; in rad and rad/s per unit of what is named.
     accuracy : Accuracy or None
         What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
         and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
@@ -75,7 +78,16 @@ class Solution:
     'q_2 = 0.704933 rad at 2.5 s'
     """
 
-    __slots__ = ("_events", "_name", "_run", "accuracy", "known_error", "scene")
+    __slots__ = (
+        "_events",
+        "_name",
+        "_run",
+        "accuracy",
+        "known_error",
+        "scene",
+        "sensitivities",
+        "sensitivity_names",
+    )
 
     def __init__(
         self,
@@ -84,8 +96,11 @@ class Solution:
         name: str = "",
         accuracy: Accuracy | None = None,
         error: ErrorEstimate | None = None,
+        sensitivities: Floats | None = None,
+        sensitivity_names: tuple[str, ...] = (),
     ) -> None:
         self.scene, self._run = scene, run
+        self.sensitivities, self.sensitivity_names = sensitivities, sensitivity_names
         self._name = name and text("name", name)
         self.accuracy, self.known_error = accuracy, error
         self._events: list[FoundEvents] | None = None
@@ -657,7 +672,10 @@ class Solution:
     def __reduce__(self) -> tuple[type[Solution], tuple[Any, ...]]:
         # The scene comes first: if it cannot be pickled, its message says so best.
         verified = None if self.accuracy is None else self.known_error
-        return type(self), (self.scene, self._run, self.name, self.accuracy, verified)
+        derivatives = self.sensitivities, self.sensitivity_names
+        return type(self), (
+            self.scene, self._run, self.name, self.accuracy, verified, *derivatives
+        )  # fmt: skip
 
     def __deepcopy__(self, memo: object) -> Solution:
         make, parts = self.__reduce__()

@@ -30,7 +30,7 @@ PAGE_MODULES = (
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
-LEFT_OUT = {"error", "events", "progress", "on_failure"}
+LEFT_OUT = {"error", "events", "progress", "on_failure", "sensitivities"}
 """The options of a run that a page does without."""
 WITHOUT_CORE = (
     "This page plays back what Python computed: the install that made it has no core for browsers "

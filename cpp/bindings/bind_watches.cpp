@@ -1,7 +1,11 @@
+#include <pybind11/stl.h>
+
+#include <string>
 #include <tuple>
 #include <vector>
 
 #include "analysis/defect_correction.hpp"
+#include "analysis/sensitivities.hpp"
 #include "arguments.hpp"
 
 namespace pendcore::bindings {
@@ -27,8 +31,18 @@ py::array errors_of(const DefectCorrection& correction) {
 
 }  // namespace
 
-void bind_defect_correction(py::module_& module) {
-  py::class_<DefectCorrection>(module, "DefectCorrection")
+void bind_watches(py::module_& module) {
+  const py::class_<KeepingWatch> watch(module, "Watch");
+  py::class_<Sensitivities, KeepingWatch>(module, "Sensitivities")
+      .def(py::init<const Scene&, const std::vector<std::string>&>(), py::arg("scene"),
+           py::arg("names"))
+      .def_property_readonly("values", [](const Sensitivities& found) {
+        const auto states = static_cast<py::ssize_t>(found.states());
+        const auto names = static_cast<py::ssize_t>(found.names());
+        const auto times = static_cast<py::ssize_t>(found.values().size()) / (states * names);
+        return copy(found.values(), {times, states, names});
+      });
+  py::class_<DefectCorrection, KeepingWatch>(module, "DefectCorrection")
       .def(py::init(&with_neighbours), py::arg("neighbours"))
       .def_property_readonly(
           "t", [](const DefectCorrection& correction) { return copy(correction.t()); })

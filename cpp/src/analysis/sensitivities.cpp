@@ -1,0 +1,316 @@
+#include "analysis/sensitivities.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <Eigen/LU>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "arithmetic/sine_cosine.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/inverse_dynamics.hpp"
+#include "dynamics/jacobian.hpp"
+#include "dynamics/joint_forces.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/parameters.hpp"
+#include "scene/effects_of_scene.hpp"
+
+namespace pendcore {
+namespace {
+
+/// Legendre's polynomials P_0 .. P_{count - 1} at 2 theta - 1.
+Vector legendre(int count, double theta) {
+  const double x = 2.0 * theta - 1.0;
+  Vector p(count);
+  for (int k = 0; k < count; ++k) {
+    p[k] = k == 0 ? 1.0 : k == 1 ? x : ((2 * k - 1) * x * p[k - 1] - (k - 1) * p[k - 2]) / k;
+  }
+  return p;
+}
+
+/// The collocation at the points of a Gauss quadrature of a step from theta = 0 to 1.
+struct Collocation {
+  explicit Collocation(int points);
+
+  /// With them, a row of the values of f at the points, (s), gives the integral of f from 0 to
+  /// theta, and the integral of that.
+  struct Integrals {
+    Vector once, twice;
+  };
+  Integrals integrals(double theta) const;
+
+  int s;
+  Vector theta, weight;
+  Matrix to_legendre;  ///< from values at the points to the coefficients of P_k, (s, s)
+  std::vector<Integrals> to_point;
+  Integrals to_end;
+};
+
+Collocation::Collocation(int points) : s(points), theta(points), weight(points) {
+  for (int i = 0; i < s; ++i) {  // Newton's method, from Tricomi's estimate
+    double sine, cosine;
+    sine_cosine(std::numbers::pi * (i + 0.75) / (s + 0.5), sine, cosine);
+    double x = 0.5 - 0.5 * cosine;
+    double slope = 0.0;
+    for (int round = 0; round < 8; ++round) {
+      const Vector p = legendre(s + 1, x);
+      const double at = 2.0 * x - 1.0;
+      slope = 2.0 * s * (p[s - 1] - at * p[s]) / (1.0 - at * at);
+      x -= p[s] / slope;
+    }
+    theta[i] = x;
+    weight[i] = 4.0 / ((1.0 - (2.0 * x - 1.0) * (2.0 * x - 1.0)) * slope * slope);
+  }
+  to_legendre.resize(s, s);
+  for (int j = 0; j < s; ++j) {
+    const Vector p = legendre(s, theta[j]);
+    for (int k = 0; k < s; ++k) to_legendre(k, j) = (2 * k + 1) * weight[j] * p[k];
+  }
+  for (int i = 0; i < s; ++i) to_point.push_back(integrals(theta[i]));
+  to_end = integrals(1.0);
+}
+
+Collocation::Integrals Collocation::integrals(double at) const {
+  const Vector p = legendre(s + 3, at);
+  Vector once(s + 1), twice(s);  // of P_k
+  for (int k = 0; k <= s; ++k) {
+    once[k] = k == 0 ? at : (p[k + 1] - p[k - 1]) / (2.0 * (2 * k + 1));
+  }
+  for (int k = 0; k < s; ++k) {
+    twice[k] = k == 0 ? 0.5 * at * at : (once[k + 1] - once[k - 1]) / (2.0 * (2 * k + 1));
+  }
+  return {to_legendre.transpose() * once.head(s), to_legendre.transpose() * twice};
+}
+
+/// The collocation that suits a dense output of a degree.
+const Collocation& collocation_for(int degree) {
+  static const std::vector<Collocation> all = [] {
+    std::vector<Collocation> made;
+    for (int s = 4; s <= 16; ++s) made.emplace_back(s);
+    return made;
+  }();
+  return all[std::clamp((degree + 5) / 2, 4, 16) - 4];
+}
+
+/// The number of the column of q0 or qd0 that a name means, from 0, or -1.
+int column_of_start(const std::string& name, const std::string& kind, int n) {
+  if (!name.starts_with(kind + "[") || !name.ends_with("]")) return -1;
+  int i = 0;
+  const char* const end = name.data() + name.size() - 1;
+  const auto [read, error] = std::from_chars(name.data() + kind.size() + 1, end, i);
+  if (read == end && error == std::errc() && i >= 1 && i <= n) return i - 1;
+  throw std::invalid_argument("sensitivities: \"" + name + "\": must be " + kind + "[1] to " +
+                              kind + "[" + std::to_string(n) + "]");
+}
+
+void require_smooth(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const Effect& effect = scene.effects[i];
+    if (!effect.info().jumps_or_sticks && !effect.is<Lock>()) continue;
+    throw std::invalid_argument(
+        "sensitivities: " + effect_name(scene, i) +
+        ": what changes with a start or a parameter jumps where a joint sticks, slides or bounces, "
+        "and has no value where it is locked; leave this effect out, or compare two runs");
+  }
+}
+
+}  // namespace
+
+struct Sensitivities::Along {
+  Along(const Scene& given, const std::vector<std::string>& names)
+      : scene(given),
+        n(static_cast<int>(given.links.size())),
+        k(static_cast<Eigen::Index>(names.size())),
+        equations(equations_of_motion(given)),
+        jacobian(given, equations),
+        forces(given),
+        now(Matrix::Zero(2 * n, k)) {
+    for (int j = 0; j < n; ++j) forces.joints.push_back(j);
+    for (Eigen::Index column = 0; column < k; ++column) {
+      const std::string& name = names[static_cast<std::size_t>(column)];
+      const int angle = column_of_start(name, "q0", n);
+      const int rate = column_of_start(name, "qd0", n);
+      if (angle >= 0) {
+        now(angle, column) = 1.0;
+      } else if (rate >= 0) {
+        now(n + rate, column) = 1.0;
+      } else {
+        parameters.push_back({name, column, {}});
+      }
+    }
+    std::vector<std::string> only_names;
+    for (const Parameter& one : parameters) only_names.push_back(one.name);
+    const ParameterChoice known(scene, only_names);  // throws for a name that is none
+  }
+
+  struct Parameter {
+    std::string name;
+    Eigen::Index column;
+    Mechanism<Dual<double>> mechanism;
+  };
+
+  /// What the variational equations are at a point of a step.
+  struct Point {
+    Matrix by_q, by_qd;  ///< (n, n)
+    Matrix by_name;      ///< (n, k)
+  };
+
+  void choose_modes_at(double t, const Vector& y);
+  Point at(double t, const Vector& y);
+  void advance(const WatchedStep& step, double from, double to, int halvings);
+  Vector state(const WatchedStep& step, double theta) const;
+  /// Whether the next time that is kept lies in a step.
+  bool is_due(const WatchedStep& step) const {
+    return next_time < t_eval.size() && (t_eval[next_time] - step.t) * step.h <= 0.0;
+  }
+  void keep_now() { values.insert(values.end(), now.data(), now.data() + now.size()); }
+
+  Scene scene;
+  int n;
+  Eigen::Index k;
+  EquationsOfMotion equations;
+  Jacobian jacobian;
+  JointForces forces;
+  InverseDynamics<Dual<double>> inverse_dynamics{};
+  std::vector<Parameter> parameters{};
+  std::optional<std::vector<int>> modes{};  ///< for which the mechanisms are made
+  Matrix now;                               ///< (2n, k)
+  double t_start = 0.0;
+
+  bool keeps_end = true;
+  bool keeps_times = false;
+  std::vector<double> t_eval{};
+  std::size_t next_time = 0;
+  std::vector<double> values{};
+};
+
+/// Puts the laws in the modes of the middle of a step.
+void Sensitivities::Along::choose_modes_at(double t, const Vector& y) {
+  if (equations.effects) choose_modes(*equations.effects, t, y.data(), y.data() + n, true);
+  std::vector<int> chosen = modes_at(scene, t, y.data(), y.data() + n);
+  if (modes && chosen == *modes) return;
+  modes = std::move(chosen);
+  for (Parameter& one : parameters) one.mechanism = mechanism_along(scene, *modes, t, one.name);
+}
+
+Sensitivities::Along::Point Sensitivities::Along::at(double t, const Vector& y) {
+  Point point{.by_q = Matrix(n, n), .by_qd = Matrix(n, n), .by_name = Matrix::Zero(n, k)};
+  jacobian(t, y.data(), y.data() + n, point.by_q, point.by_qd);
+  if (parameters.empty()) return point;
+  Vector qdd(n);
+  accelerations_in_force(equations, t, y.data(), y.data() + n, qdd.data());
+  forces.set_mass_matrix(y.data());
+  forces.set_up();
+  const Numbers q(y.head(n)), qd(y.segment(n, n));
+  for (const Parameter& one : parameters) {
+    const auto& torques = inverse_dynamics.torques(one.mechanism, t, q, qd, qdd);
+    Vector less(n);
+    for (int j = 0; j < n; ++j) less[j] = -torques[j].slope;
+    point.by_name.col(one.column) = forces.response(less);
+  }
+  return point;
+}
+
+Vector Sensitivities::Along::state(const WatchedStep& step, double theta) const {
+  const auto size = static_cast<Eigen::Index>(step.y.size());
+  const Eigen::Map<const Matrix> rows(step.rows, step.degree + 1, size);
+  Vector y = rows.row(step.degree).head(2 * n).transpose();
+  for (int p = step.degree; p-- > 0;) y = theta * y + rows.row(p).head(2 * n).transpose();
+  return y;
+}
+
+/// Advances through the part of a step between two shares of it.
+void Sensitivities::Along::advance(const WatchedStep& step, double from, double to, int halvings) {
+  const Collocation& points = collocation_for(step.degree);
+  const int s = points.s;
+  const double h = (to - from) * step.h;
+  Matrix system = Matrix::Identity(n * s, n * s);
+  Matrix right(n * s, k);
+  const Matrix angles = now.topRows(n), rates = now.bottomRows(n);
+  for (int i = 0; i < s; ++i) {
+    const double theta = from + points.theta[i] * (to - from);
+    const Point here = at(t_start + theta * step.h, state(step, theta));
+    const Collocation::Integrals& integrals = points.to_point[i];
+    for (int j = 0; j < s; ++j) {
+      system.block(i * n, j * n, n, n) -=
+          h * h * integrals.twice[j] * here.by_q + h * integrals.once[j] * here.by_qd;
+    }
+    right.middleRows(i * n, n) =
+        here.by_q * (angles + points.theta[i] * h * rates) + here.by_qd * rates + here.by_name;
+  }
+  const Matrix found = system.partialPivLu().solve(right);  // d(dqd)/dt at the points, (s n, k)
+
+  // The highest of Legendre's coefficients say how well a polynomial of this degree fits.
+  constexpr double converged = 1e-13;
+  constexpr int most_halvings = 12;
+  Matrix coefficients = Matrix::Zero(s * n, k);
+  for (int p = 0; p < s; ++p) {
+    for (int j = 0; j < s; ++j) {
+      coefficients.middleRows(p * n, n) += points.to_legendre(p, j) * found.middleRows(j * n, n);
+    }
+  }
+  const double left_out = coefficients.bottomRows(n).cwiseAbs().maxCoeff();
+  const double size = now.cwiseAbs().maxCoeff() + std::abs(h) * coefficients.cwiseAbs().maxCoeff();
+  if (std::abs(h) * left_out > std::sqrt(converged) * size && halvings < most_halvings) {
+    const double middle = 0.5 * (from + to);
+    advance(step, from, middle, halvings + 1);
+    advance(step, middle, to, halvings + 1);
+    return;
+  }
+  now.topRows(n) += h * rates;
+  for (int j = 0; j < s; ++j) {
+    const auto at_point = found.middleRows(j * n, n);
+    now.topRows(n) += h * h * points.to_end.twice[j] * at_point;
+    now.bottomRows(n) += h * points.to_end.once[j] * at_point;
+  }
+}
+
+Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>& names) {
+  require_smooth(scene);
+  along_ = std::make_unique<Along>(scene, names);
+}
+Sensitivities::~Sensitivities() = default;
+Sensitivities::Sensitivities(Sensitivities&&) noexcept = default;
+
+void Sensitivities::keep(Store store, const std::vector<double>& t_eval) {
+  along_->keeps_end = store == Store::end;
+  along_->keeps_times = store == Store::times || (store == Store::dense && !t_eval.empty());
+  along_->t_eval = t_eval;
+}
+
+void Sensitivities::starts(double t, std::span<const double> /*y*/) {
+  along_->t_start = t;
+  const bool is_asked_for = !along_->t_eval.empty() && along_->t_eval.front() == t;
+  if (is_asked_for) ++along_->next_time;
+  if (!along_->keeps_times || is_asked_for) along_->keep_now();
+}
+
+void Sensitivities::steps(const WatchedStep& step) {
+  if (step.share == 0.0) return;  // an event at the start of a step
+  const double middle = 0.5 * step.share;
+  along_->choose_modes_at(along_->t_start + middle * step.h, along_->state(step, middle));
+  // A time that is kept is the end of a part: there, the order is highest.
+  double from = 0.0;
+  for (; along_->keeps_times && along_->is_due(step); ++along_->next_time) {
+    const double t = along_->t_eval[along_->next_time];
+    const double to = t == step.t ? step.share : (t - along_->t_start) / step.h;
+    along_->advance(step, from, to, 0);
+    along_->keep_now();
+    from = to;
+  }
+  if (from != step.share) along_->advance(step, from, step.share, 0);
+  along_->t_start = step.t;
+  if (along_->keeps_times) return;
+  if (along_->keeps_end) along_->values.clear();
+  along_->keep_now();
+}
+
+void Sensitivities::jumps(double /*t*/, std::span<const double> /*y*/) {}
+
+const std::vector<double>& Sensitivities::values() const { return along_->values; }
+std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * along_->n); }
+std::size_t Sensitivities::names() const { return static_cast<std::size_t>(along_->k); }
+
+}  // namespace pendcore

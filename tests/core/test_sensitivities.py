@@ -1,0 +1,232 @@
+"""Derivatives of runs agree with those of the reference, in complex numbers; none is made up.
+
+The reference's equations are integrated with one number of the start or the scene moved by 1e-30 i:
+the imaginary part of the states is then the derivative, without a difference. The integration is
+Gragg's extrapolated midpoint rule, in steps that are far too short.
+"""
+
+from __future__ import annotations
+
+import pickle
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from described_scenes import scene_of
+from numpy.typing import NDArray
+from reference.arithmetic import COMPLEX
+from reference.effects import Described, law
+from reference.newton_euler import Body
+from reference.rig import Rig
+
+E = pc.effects
+TEXTBOOK = pc.Scene.textbook()
+LITTLE = 1e-30j
+BODIES = [Body(1.0, 0.9, 0.4, 0.09), Body(0.7, 1.1, 0.6, 0.08), Body(0.4, 0.5, 0.2, 0.01)]
+ACTING: list[Described] = [
+    ("viscous_joint", {"joint": 2, "damping": 0.1, "damping3": 0.02}),
+    ("torsional_spring", {"joint": 1, "stiffness": 2.0, "rest_angle": 0.3}),
+    ("motor", {"joint": 1, "sinusoid": {"amplitude": 2.0, "angular_frequency": 3.0, "phase": 0.2}}),
+    ("payload", {"mass": 0.3, "inertia": 0.02}),
+    ("rotor_inertia", {"joint": 2, "armature": 0.05}),
+    ("driven_pivot", {"y": {"amplitude": 0.05, "angular_frequency": 5.0}}),
+]
+
+
+def midpoint_rule(f: Callable[..., Any], t: float, y: Any, h: float) -> Any:
+    """One step of Gragg's rule, extrapolated to order 16."""
+    rows: list[Any] = []
+    for j in range(1, 9):
+        substeps = 2 * j
+        step, before, here = h / substeps, y, y + h / substeps * f(t, y)
+        for k in range(1, substeps):
+            before, here = here, before + 2 * step * f(t + k * step, here)
+        row = [(before + here + step * f(t + h, here)) / 2]
+        for k, earlier in enumerate(rows[-1] if rows else [], 1):
+            row.append(row[-1] + (row[-1] - earlier) / ((j / (j - k)) ** 2 - 1))
+        rows.append(row)
+    return rows[-1][-1]
+
+
+def exact(
+    n: int, described: list[Described], y0: list[float], name: str, times: Any
+) -> NDArray[np.float64]:
+    """d(q, qd)/d(name) at some times, from the reference."""
+    described = [(kind, {k: dict(v) if isinstance(v, dict) else v for k, v in told.items()})
+                 for kind, told in described]  # fmt: skip
+    bodies = [list(body) for body in BODIES[:n]]
+    gravity: Any = 9.807
+    y: Any = np.array(y0, dtype=complex)
+    if name == "gravity":
+        gravity += LITTLE
+    elif start := re.fullmatch(r"(q0|qd0)\[(\d)\]", name):
+        y[int(start[2]) - 1 + n * (start[1] == "qd0")] += LITTLE
+    elif link := re.fullmatch(r"link\[(\d)\]\.(\w+)", name):
+        bodies[int(link[1]) - 1][Body._fields.index(link[2])] += LITTLE
+    else:
+        i, path = re.fullmatch(r"effect\[(\d)\]\.(.+)", name).groups()  # type: ignore[union-attr]
+        *parts, last = path.split(".")
+        owner: Any = described[int(i) - 1][1]
+        for part in parts:
+            owner = owner[part]
+        owner[last] = owner.get(last, 0.0) + LITTLE
+    made = [Body(*body) for body in bodies]
+    rig = Rig(bodies=made, gravity=gravity, effects=[law(one) for one in described],
+              arithmetic=COMPLEX)  # fmt: skip
+
+    def rates(t: float, y: Any) -> Any:
+        return np.array([*y[n:], *rig.motion(t, list(y[:n]), list(y[n:])).accelerations])
+
+    found, t = [], 0.0
+    for end in times:
+        steps = max(1, round((end - t) / 0.02))
+        for k in range(steps):
+            y = midpoint_rule(rates, t + k * (end - t) / steps, y, (end - t) / steps)
+        t = end
+        found.append(y.imag / LITTLE.imag)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_derivatives_are_those_of_the_reference(n: int) -> None:
+    described = [one for one in ACTING if one[1].get("joint", 1) <= n]
+    scene = scene_of(BODIES[:n], 9.807, described)
+    q0, qd0 = [0.4, -0.9, 1.3][:n], [0.5, 1.0, -2.0][:n]
+    times = np.array([0.0, 0.15, 0.4])
+    # abs() has no derivative in complex numbers; an infinite limit has none at all.
+    parameters = [x for x in scene.parameters() if not x.endswith(("damping2", "limit"))]
+    names = [*(f"q0[{i}]" for i in range(1, n + 1)), f"qd0[{n}]", *parameters[:: 1 + n // 3]]
+    sol = pc.simulate(scene, (0, 0.4), q0, qd0, rtol=1e-13, atol=1e-16, t_eval=times,
+                      sensitivities=names)  # fmt: skip
+    assert sol.sensitivities is not None
+    assert sol.sensitivities.shape == (3, 2 * n, len(names))
+    for column, name in enumerate(names):
+        right = exact(n, described, [*q0, *qd0], name, times)
+        error = np.abs(sol.sensitivities[:, :, column] - right).max()
+        assert error <= 1e-11 * max(1.0, np.abs(right).max()), name
+
+
+def test_square_damping_and_limits_have_theirs() -> None:
+    """Laws whose pieces meet without a jump: against runs on either side."""
+    effects = [
+        E.ViscousJoint(joint=2, damping=0.05, damping2=0.2),
+        E.Motor(joint=1, pd=E.PD(kp=8.0, kd=0.5, reference=1.0), limit=4.0),
+        E.RodDrag(link=2, drag_coefficient=1.2, diameter=0.2, wind=(1.0, 0.0)),
+    ]
+    scene, times = TEXTBOOK.replace(effects=effects), np.linspace(0, 2, 5)
+    names = ["effect[1].damping2", "effect[2].pd.kp", "effect[2].limit", "effect[3].wind.x"]
+    exactly: Any = {"rtol": 1e-13, "atol": 1e-16, "t_eval": times}
+    sol = pc.simulate(scene, (0, 2), [0.3, 0.8], [1.0, -2.0], sensitivities=names, **exactly)
+    assert sol.sensitivities is not None
+    for column, name in enumerate(names):
+        value, by = scene.parameters()[name], 1e-4
+        ends = [pc.simulate(scene.with_parameters({name: value + sign * by}), (0, 2), [0.3, 0.8],
+                            [1.0, -2.0], **exactly) for sign in (1, -1)]  # fmt: skip
+        slope = (ends[0].y - ends[1].y).T / (2 * by)
+        error = np.abs(sol.sensitivities[:, :, column] - slope).max()
+        assert error <= 1e-6 * np.abs(slope).max(), name
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853", "dopri5", "radau5"])
+def test_methods_and_what_is_kept_agree(method: str) -> None:
+    scene = TEXTBOOK.replace(effects=[E.ViscousJoint(joint=2, damping=0.2)])
+    names, times = ["q0[1]", "link[2].length"], [0.1, 1.0, 2.5]
+    asked: Any = {"method": method, "rtol": 1e-11, "atol": 1e-14, "sensitivities": names}
+
+    def run(**options: Any) -> pc.Solution:
+        return pc.simulate(scene, (0, 2.5), [0.5, 1.0], 0.0, **asked, **options)
+
+    steps, end, chosen = run(), run(store="end"), run(t_eval=times)
+    assert steps.sensitivities is not None
+    assert end.sensitivities is not None
+    assert chosen.sensitivities is not None
+    assert len(steps.sensitivities) == len(steps.t)
+    np.testing.assert_array_equal(steps.sensitivities[-1], end.sensitivities[0])
+    np.testing.assert_allclose(chosen.sensitivities[-1], end.sensitivities[0], rtol=1e-12)
+    best = pc.simulate(scene, (0, 2.5), [0.5, 1.0], 0.0, rtol=1e-14, atol=1e-17, t_eval=times,
+                       sensitivities=names)  # fmt: skip
+    np.testing.assert_allclose(chosen.sensitivities, best.sensitivities, rtol=0, atol=1e-8)
+    # The motion has the bits that it has without.
+    assert (
+        steps.fingerprint
+        == pc.simulate(
+            scene, (0, 2.5), [0.5, 1.0], 0.0, method=method, rtol=1e-11, atol=1e-14
+        ).fingerprint
+    )
+
+
+def test_a_transition_matrix_is_a_product_and_keeps_the_volume() -> None:
+    """By Liouville, det(M) det(dy/dy0) is that of the start, for every conservative motion."""
+    names = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]"]
+    exactly: Any = {"rtol": 1e-13, "atol": 1e-16, "store": "end", "sensitivities": names}
+    first = pc.simulate(TEXTBOOK, (0, 1.5), [2.0, 2.5], [1.0, 0.0], **exactly)
+    then = pc.simulate(TEXTBOOK, (1.5, 3), first.q[-1], first.qd[-1], **exactly)
+    whole = pc.simulate(TEXTBOOK, (0, 3), [2.0, 2.5], [1.0, 0.0], **exactly)
+    back = pc.simulate(TEXTBOOK, (3, 0), whole.q[-1], whole.qd[-1], **exactly)
+    matrices = [one.sensitivities[-1] for one in (first, then, whole, back)]  # type: ignore[index]
+    size = np.abs(matrices[2]).max()
+    np.testing.assert_allclose(matrices[1] @ matrices[0], matrices[2], rtol=0, atol=1e-9 * size)
+    np.testing.assert_allclose(matrices[3] @ matrices[2], np.eye(4), rtol=0, atol=1e-9 * size**2)
+    volume = [np.linalg.det(TEXTBOOK.mass_matrix(q)) for q in ([2.0, 2.5], whole.q[-1])]
+    assert np.linalg.det(matrices[2]) * volume[1] == pytest.approx(volume[0], rel=1e-9 * size)
+
+
+def test_they_are_kept_by_files_and_copies(tmp_path: Path) -> None:
+    sol = pc.simulate(TEXTBOOK, (0, 1), [0.3, 0.5], sensitivities=["q0[1]", "gravity"])
+    sol.save(tmp_path / "run.npz")
+    for again in (pc.load(tmp_path / "run.npz"), pickle.loads(pickle.dumps(sol))):
+        assert again.sensitivity_names == ("q0[1]", "gravity")
+        np.testing.assert_array_equal(again.sensitivities, sol.sensitivities)
+    assert pc.simulate(TEXTBOOK, (0, 1), 0.5).sensitivities is None
+
+
+def test_a_run_that_an_event_ends_has_them_there() -> None:
+    down = pc.events.LinkAngle(1, np.pi / 2, terminal=True)
+    sol = pc.simulate(TEXTBOOK, (0, 5), [0.3, 0.5], events=[down], sensitivities=["q0[1]"])
+    assert sol.sensitivities is not None
+    assert len(sol.sensitivities) == len(sol.t)
+    there = pc.simulate(TEXTBOOK, (0, sol.t[-1]), [0.3, 0.5], sensitivities=["q0[1]"])
+    assert there.sensitivities is not None
+    np.testing.assert_allclose(sol.sensitivities[-1], there.sensitivities[-1], rtol=1e-7)
+
+
+REFUSED = {
+    "a joint that sticks": (E.DryJointFriction(joint=1, coulomb=1.0), ["q0[1]"], "effect 1 .dry_"),
+    "a stop": (E.JointStop(joint=1, range=(-1, 1)), ["q0[1]"], r"effect 1 \(joint_stop\)"),
+    "a lock": (E.Lock(joint=1), ["q0[1]"], r"effect 1 \(lock\)"),
+    "no such link": (E.Payload(mass=1.0), ["q0[3]"], r"q0\[3\].*must be q0\[1\] to q0\[2\]"),
+    "no number": (E.Payload(mass=1.0), ["qd0[x]"], r"must be qd0\[1\] to qd0\[2\]"),
+    "no parameter": (E.Payload(mass=1.0), ["lnk[1].mass"], r'did you mean "link\[1\]\.mass"'),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_has_no_derivative_is_refused(name: str) -> None:
+    effect, names, told = REFUSED[name]
+    with pytest.raises(ValueError, match=told):
+        pc.simulate(TEXTBOOK.replace(effects=[effect]), (0, 1), [0.3, 0.5], sensitivities=names)
+
+
+@pytest.mark.parametrize("names", ["q0[1]", [], [1]])
+def test_names_are_a_list_of_texts(names: Any) -> None:
+    with pytest.raises(TypeError, match="sensitivities = .*: must be a list of names"):
+        pc.simulate(TEXTBOOK, (0, 1), [0.3, 0.5], sensitivities=names)
+
+
+def test_a_limit_at_its_corner_has_one_slope_on_each_side() -> None:
+    motor = E.Motor(joint=1, constant=2.0, limit=2.0)
+    scene = TEXTBOOK.replace(effects=[motor])
+    with pytest.raises(ValueError, match="a law has a corner at this value"):
+        scene.linearize([0.3, 0.4], inputs=["effect[1].constant"])
+    sides = [
+        TEXTBOOK.replace(effects=[E.Motor(joint=1, constant=2.0, limit=2.0 + by)]).linearize(
+            [0.3, 0.4], inputs=["effect[1].constant"]
+        )
+        for by in (1e-6, -1e-6)
+    ]
+    assert np.abs(sides[0].B).max() > 0.1
+    assert not sides[1].B.any()
