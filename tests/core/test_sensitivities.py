@@ -213,7 +213,7 @@ def test_what_has_no_derivative_is_refused(name: str) -> None:
 
 @pytest.mark.parametrize("names", ["q0[1]", [], [1]])
 def test_names_are_a_list_of_texts(names: Any) -> None:
-    with pytest.raises(TypeError, match="sensitivities = .*: must be a list of names"):
+    with pytest.raises(TypeError, match=r"sensitivities = .*: must be a list of names"):
         pc.simulate(TEXTBOOK, (0, 1), [0.3, 0.5], sensitivities=names)
 
 
