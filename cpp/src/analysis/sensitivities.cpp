@@ -1,7 +1,6 @@
 #include "analysis/sensitivities.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <Eigen/LU>
 #include <numbers>
@@ -96,11 +95,10 @@ const Collocation& collocation_for(int degree) {
 
 /// The number of the column of q0 or qd0 that a name means, from 0, or -1.
 int column_of_start(const std::string& name, const std::string& kind, int n) {
-  if (!name.starts_with(kind + "[") || !name.ends_with("]")) return -1;
-  int i = 0;
-  const char* const end = name.data() + name.size() - 1;
-  const auto [read, error] = std::from_chars(name.data() + kind.size() + 1, end, i);
-  if (read == end && error == std::errc() && i >= 1 && i <= n) return i - 1;
+  if (!name.starts_with(kind)) return -1;
+  for (int i = 0; i < n; ++i) {
+    if (name == kind + "[" + std::to_string(i + 1) + "]") return i;
+  }
   throw std::invalid_argument("sensitivities: \"" + name + "\": must be " + kind + "[1] to " +
                               kind + "[" + std::to_string(n) + "]");
 }
@@ -137,12 +135,10 @@ struct Sensitivities::Along {
       } else if (rate >= 0) {
         now(n + rate, column) = 1.0;
       } else {
+        const ParameterChoice known(scene, {name});  // throws for a name that is none
         parameters.push_back({name, column, {}});
       }
     }
-    std::vector<std::string> only_names;
-    for (const Parameter& one : parameters) only_names.push_back(one.name);
-    const ParameterChoice known(scene, only_names);  // throws for a name that is none
   }
 
   struct Parameter {

@@ -39,7 +39,7 @@ std::vector<Number*> numbers_of(Mechanism<Number>& all) {
           },
           *effect.law);
     }
-    if (effect.pivot) add_fields(*effect.pivot);
+    if (effect.moves_pivot) add_fields(effect.pivot);
     for (auto& wave : effect.waves) add(wave.angular_frequency, wave.phase);
   }
   return found;
@@ -59,11 +59,9 @@ Mechanism<Dual<double>> with_slopes(const Mechanism<double>& plain) {
                               const Law<double>& /*law*/) { return LawOn<Number>(Law<Number>{}); },
                           *from.law);
     }
-    if (from.pivot) {
-      to.pivot.emplace();
-      to.pivot->x.wave = from.pivot->x.wave;
-      to.pivot->y.wave = from.pivot->y.wave;
-    }
+    to.moves_pivot = from.moves_pivot;
+    to.pivot.x.wave = from.pivot.x.wave;
+    to.pivot.y.wave = from.pivot.y.wave;
     to.waves.resize(from.waves.size());
   }
   return result;
@@ -141,7 +139,10 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
     const Link& link = scene.links[acting.place];
     acting.law = effect.law(modes[i], {link.mass, link.length, link.center, scene.gravity});
     if (!acting.law) acting.couple = effect.couple(modes[i]);
-    acting.pivot = effect.pivot_law(modes[i]);
+    if (const std::optional<PivotLaw> pivot = effect.pivot_law(modes[i])) {
+      acting.moves_pivot = true;
+      acting.pivot = *pivot;
+    }
     for (const Sinusoid& wave : effect.waves()) {
       acting.waves.push_back({wave.angular_frequency, wave.phase});
     }
@@ -218,9 +219,9 @@ const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Numb
       const Number angle = t * effect.waves[k].angular_frequency + effect.waves[k].phase;
       sine_cosine(angle, s[k], c[k]);
     }
-    if (!effect.pivot) continue;
-    effect.pivot->add_acceleration(Number(t), s, acceleration.x, acceleration.y);
-    effect.pivot->add_velocity(Number(t), c, velocity.x, velocity.y);
+    if (!effect.moves_pivot) continue;
+    effect.pivot.add_acceleration(Number(t), s, acceleration.x, acceleration.y);
+    effect.pivot.add_velocity(Number(t), c, velocity.x, velocity.y);
   }
 
   // From the pivot to the tip: where each joint goes, and what it takes to move each link.
@@ -249,7 +250,7 @@ const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Numb
 
   loads_.assign(n, {});
   for (std::size_t e = 0; e < mechanism.effects.size(); ++e) {
-    const auto& [place, couple, law, pivot, waves] = mechanism.effects[e];
+    const auto& [place, couple, law, moves_pivot, pivot, waves] = mechanism.effects[e];
     if (couple) {
       loads_[place].couple(couple->torque(t, relative(q.data(), place + 1),
                                           relative(qd.data(), place + 1), waves_[e].sine[0]));

@@ -40,7 +40,8 @@ struct Mechanism {
     int place = 0;  ///< the joint or the link, from 0
     std::optional<CoupleOf<Number>> couple{};
     std::optional<LawOn<Number>> law{};
-    std::optional<PivotLawOf<Number>> pivot{};
+    bool moves_pivot = false;
+    PivotLawOf<Number> pivot{};
     std::vector<Wave> waves{};
   };
 
