@@ -11,6 +11,7 @@
 #include "dynamics/cost.hpp"
 #include "dynamics/equations_of_motion.hpp"
 #include "kind_and_values.hpp"
+#include "pendcore/effects/motor.hpp"
 #include "pendcore/equations.hpp"
 #include "pendcore/mechanics.hpp"
 #include "simulate/initial_state.hpp"
@@ -135,9 +136,10 @@ Array array_from(const Found& found, const std::vector<py::ssize_t>& shape) {
 }
 
 /// The state, its rate, A and B. Returns nothing if t is not a finite number, q not n finite
-/// numbers, or qd neither n finite numbers nor one: the caller then says which.
+/// numbers, or qd neither n finite numbers nor one: the caller then says which. `torques` are held
+/// in the joints that are the inputs, or None.
 std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle q, py::handle qd,
-                                   const py::tuple& inputs) {
+                                   const py::tuple& inputs, py::handle torques) {
   const std::size_t n = scene.links.size();
   std::vector<Input> given;
   given.reserve(inputs.size());
@@ -154,7 +156,17 @@ std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle 
     return std::nullopt;
   }
   const Numbers angles(state.head(n)), rates(state.tail(n));
-  const Linearization found = Equations(scene).linearize(time, angles, rates, given);
+  Linearization found;
+  if (torques.is_none()) {
+    found = Equations(scene).linearize(time, angles, rates, given);
+  } else {
+    const std::vector<double> held = numbers("torques", torques, "(k,)", given.size());
+    Scene driven = scene;
+    for (std::size_t k = 0; k < given.size(); ++k) {
+      driven.effects.push_back(Motor{.joint = given[k].joint, .constant = held.at(k)});
+    }
+    found = Equations(driven).linearize(time, angles, rates, given);
+  }
   const auto rows = static_cast<py::ssize_t>(2 * n);
   const auto columns = static_cast<py::ssize_t>(given.size());
   return py::make_tuple(array_from(state, {rows}), array_from(found.drift, {rows}),
@@ -187,7 +199,8 @@ void bind_scene(py::module_& module) {
       .def("acceleration_of_state", &acceleration_of_state, py::arg("t"), py::arg("q"),
            py::arg("qd"))
       .def("jacobian", &jacobian_rows, py::arg("t"), py::arg("q"), py::arg("qd"))
-      .def("linearize", &linearize, py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("inputs"))
+      .def("linearize", &linearize, py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("inputs"),
+           py::arg("torques"))
       .def(
           "trim",
           [](const Scene& scene, double t, const std::vector<double>& q, const py::tuple& joints) {

@@ -36,10 +36,12 @@ void bind_watches(py::module_& module) {
   py::class_<Sensitivities, KeepingWatch>(module, "Sensitivities")
       .def(py::init<const Scene&, const std::vector<std::string>&>(), py::arg("scene"),
            py::arg("names"))
+      .def_property_readonly("refusal", &Sensitivities::refusal)
       .def_property_readonly("values", [](const Sensitivities& found) {
         const auto states = static_cast<py::ssize_t>(found.states());
         const auto names = static_cast<py::ssize_t>(found.names());
-        const auto times = static_cast<py::ssize_t>(found.values().size()) / (states * names);
+        const auto numbers = static_cast<py::ssize_t>(found.values().size());
+        const auto times = names == 0 ? 0 : numbers / (states * names);
         return copy(found.values(), {times, states, names});
       });
   py::class_<DefectCorrection, KeepingWatch>(module, "DefectCorrection")

@@ -54,9 +54,7 @@ def corrected(
     correction = _core.DefectCorrection([(scene._compiled, start.q0, way.points)])
     if "t_eval" in kept:
         kept["t_eval"] = np.linspace(start.t_start, start.t_end, kept["t_eval"])
-    solution = run(
-        start, Choice(way.method, rtol, atol_beside(rtol)), correction=correction, **kept
-    )
+    solution = run(start, Choice(way.method, rtol, atol_beside(rtol)), watch=correction, **kept)
     return solution, correction
 
 
@@ -103,7 +101,7 @@ def test_errors_at_ends_of_steps_are_those_within_them() -> None:
     dense, whole = corrected(start, start.scene, SERIES_6_5)
     times = np.sort(np.append(dense.step_starts, whole.t[3::6]))[1:]
     correction = _core.DefectCorrection([(start.scene._compiled, start.q0, SERIES_6_5.points)])
-    run(start, Choice("taylor", 1e-6, atol_beside(1e-6)), times, correction=correction)
+    run(start, Choice("taylor", 1e-6, atol_beside(1e-6)), times, watch=correction)
     at = np.searchsorted(whole.t, times)
     assert correction.errors == pytest.approx(whole.errors[at], rel=1e-9, abs=1e-22)
 
@@ -141,7 +139,7 @@ def test_neighbour_that_is_another_scene_gives_the_distance_from_its_motion() ->
     correction = _core.DefectCorrection(
         [(one._compiled, start.q0, [8]) for one in (start.scene, heavier)]
     )
-    solution = run(start, Choice("taylor", 1e-11, 1e-14), correction=correction)
+    solution = run(start, Choice("taylor", 1e-11, 1e-14), watch=correction)
     t = correction.t
     distance = angles(start._replace(scene=heavier), t) - solution(t)[:2].T
     assert np.abs(distance).max() > 1e-7
@@ -170,7 +168,7 @@ def test_chaotic_motion_is_lost_and_its_early_part_known() -> None:
     scene = pc.Scene.textbook()
     start = Start(scene, [-1.5, -1.4], 0.0, 0.0, 60.0)
     correction = SERIES_8_7.correction(start, 1e-10)
-    solution = run(start, Choice("taylor", 1e-10, 1e-13), correction=correction)
+    solution = run(start, Choice("taylor", 1e-10, 1e-13), watch=correction)
     error = SERIES_8_7.error(solution, correction, "its defect")
     assert error.is_lost
     assert 5.0 < error.t[-1] < 60.0
@@ -221,9 +219,9 @@ def test_correction_ends_at_an_event_within_a_step(way: FromDefect, kept: dict[s
 def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
     start, tight = SCENES["textbook"], Choice("taylor", 1e-6, 1e-9)
     correction = SERIES_6_5.correction(start, 1e-6)
-    run(start, tight, correction=correction)
+    run(start, tight, watch=correction)
     with pytest.raises(ValueError, match="a run already"):
-        run(start, tight, correction=correction)
+        run(start, tight, watch=correction)
     book, chain = start.scene._compiled, CHAIN._compiled
     for neighbours, message in (
         ([(book, [1.0] * 3, [6])], "as many links"),
@@ -234,7 +232,7 @@ def test_correction_looks_on_one_run_only_and_wants_neighbours_alike() -> None:
         with pytest.raises(ValueError, match=message):
             _core.DefectCorrection(neighbours)
     with pytest.raises(ValueError, match="more links than the run"):
-        run(start, tight, correction=_core.DefectCorrection([(chain, [1.0] * 3, [6])]))
+        run(start, tight, watch=_core.DefectCorrection([(chain, [1.0] * 3, [6])]))
 
 
 def test_rounding_of_the_states_is_part_of_the_error() -> None:

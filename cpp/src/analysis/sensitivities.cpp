@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <Eigen/LU>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "pendcore/effects/lock.hpp"
 #include "pendcore/parameters.hpp"
 #include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -116,6 +118,8 @@ void require_smooth(const Scene& scene) {
 
 }  // namespace
 
+constexpr int most_halvings_of_step = 44;
+
 struct Sensitivities::Along {
   Along(const Scene& given, const std::vector<std::string>& names)
       : scene(given),
@@ -135,14 +139,14 @@ struct Sensitivities::Along {
       } else if (rate >= 0) {
         now(n + rate, column) = 1.0;
       } else {
-        const ParameterChoice known(scene, {name});  // throws for a name that is none
-        parameters.push_back({name, column, {}});
+        require_parameter(name);
+        names_of_parameters.push_back(name);
+        parameters.push_back({column, {}});
       }
     }
   }
 
   struct Parameter {
-    std::string name;
     Eigen::Index column;
     Mechanism<Dual<double>> mechanism;
   };
@@ -153,8 +157,11 @@ struct Sensitivities::Along {
     Matrix by_name;      ///< (n, k)
   };
 
+  void require_parameter(const std::string& name) const;
   void choose_modes_at(double t, const Vector& y);
+  void refuse_from(double t, const std::string& why);
   Point at(double t, const Vector& y);
+  bool has_converged(const Collocation& points, const Matrix& found, double h) const;
   void advance(const WatchedStep& step, double from, double to, int halvings);
   Vector state(const WatchedStep& step, double theta) const;
   /// Whether the next time that is kept lies in a step.
@@ -171,16 +178,33 @@ struct Sensitivities::Along {
   JointForces forces;
   InverseDynamics<Dual<double>> inverse_dynamics{};
   std::vector<Parameter> parameters{};
+  std::vector<std::string> names_of_parameters{};
   std::optional<std::vector<int>> modes{};  ///< for which the mechanisms are made
   Matrix now;                               ///< (2n, k)
   double t_start = 0.0;
 
+  bool has_started = false;
   bool keeps_end = true;
   bool keeps_times = false;
   std::vector<double> t_eval{};
   std::size_t next_time = 0;
   std::vector<double> values{};
+  std::string refusal{};
 };
+
+void Sensitivities::Along::require_parameter(const std::string& name) const {
+  if (name.starts_with("q[") || name.starts_with("qd[")) {
+    throw std::invalid_argument("sensitivities: \"" + name +
+                                "\": a start is named q0[i] or qd0[i]");
+  }
+  const ParameterChoice known(scene, {name});  // throws for a name that is none
+}
+
+/// From a time on, there are no derivatives.
+void Sensitivities::Along::refuse_from(double t, const std::string& why) {
+  refusal = "sensitivities: none after t = " + text(t) + " s: " + why;
+  now.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
 
 /// Puts the laws in the modes of the middle of a step.
 void Sensitivities::Along::choose_modes_at(double t, const Vector& y) {
@@ -188,7 +212,9 @@ void Sensitivities::Along::choose_modes_at(double t, const Vector& y) {
   std::vector<int> chosen = modes_at(scene, t, y.data(), y.data() + n);
   if (modes && chosen == *modes) return;
   modes = std::move(chosen);
-  for (Parameter& one : parameters) one.mechanism = mechanism_along(scene, *modes, t, one.name);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    parameters[i].mechanism = mechanism_along(scene, *modes, t, names_of_parameters, i);
+  }
 }
 
 Sensitivities::Along::Point Sensitivities::Along::at(double t, const Vector& y) {
@@ -201,20 +227,46 @@ Sensitivities::Along::Point Sensitivities::Along::at(double t, const Vector& y) 
   forces.set_up();
   const Numbers q(y.head(n)), qd(y.segment(n, n));
   for (const Parameter& one : parameters) {
-    const auto& torques = inverse_dynamics.torques(one.mechanism, t, q, qd, qdd);
-    Vector less(n);
-    for (int j = 0; j < n; ++j) less[j] = -torques[j].slope;
-    point.by_name.col(one.column) = forces.response(less);
+    point.by_name.col(one.column) = inverse_dynamics.change(one.mechanism, t, q, qd, qdd, forces);
   }
   return point;
 }
 
 Vector Sensitivities::Along::state(const WatchedStep& step, double theta) const {
-  const auto size = static_cast<Eigen::Index>(step.y.size());
-  const Eigen::Map<const Matrix> rows(step.rows, step.degree + 1, size);
-  Vector y = rows.row(step.degree).head(2 * n).transpose();
-  for (int p = step.degree; p-- > 0;) y = theta * y + rows.row(p).head(2 * n).transpose();
+  const std::size_t size = step.y.size();
+  Vector y(2 * n);
+  for (int i = 0; i < 2 * n; ++i) {
+    double sum = 0.0;
+    for (int p = step.degree; p >= 0; --p) sum = theta * sum + step.rows[p * size + i];
+    y[i] = sum;
+  }
   return y;
+}
+
+/// Whether d(dqd)/dt, with these values at the points, is a polynomial: by the last two of
+/// Legendre's coefficients, for each name alone. Where they fall like a geometric series, the error
+/// at the end of the step is of the order of their square. At a kink they do not.
+bool Sensitivities::Along::has_converged(const Collocation& points, const Matrix& found,
+                                         double h) const {
+  constexpr double rounding = 1e-14;
+  constexpr double square_root_of_rounding = 3e-7;
+  if (!found.allFinite()) return false;
+  const int s = points.s;
+  const auto coefficient = [&](int p) {
+    Matrix sum = Matrix::Zero(n, k);
+    for (int j = 0; j < s; ++j) sum += points.to_legendre(p, j) * found.middleRows(j * n, n);
+    return Vector(sum.cwiseAbs().colwise().maxCoeff().transpose());
+  };
+  const Vector last = coefficient(s - 1).cwiseMax(coefficient(s - 2));
+  const Vector middle = coefficient(s / 2).cwiseMax(coefficient(s / 2 - 1));
+  for (Eigen::Index column = 0; column < k; ++column) {
+    const double largest = found.col(column).cwiseAbs().maxCoeff();
+    const double size = now.col(column).cwiseAbs().maxCoeff() + std::abs(h) * largest;
+    const bool falls = last[column] * largest <= 100.0 * middle[column] * middle[column];
+    const double allowed = falls ? square_root_of_rounding : rounding;
+    if (std::abs(h) * last[column] > allowed * size) return false;
+  }
+  return true;
 }
 
 /// Advances through the part of a step between two shares of it.
@@ -230,29 +282,28 @@ void Sensitivities::Along::advance(const WatchedStep& step, double from, double 
     const Point here = at(t_start + theta * step.h, state(step, theta));
     const Collocation::Integrals& integrals = points.to_point[i];
     for (int j = 0; j < s; ++j) {
-      system.block(i * n, j * n, n, n) -=
-          h * h * integrals.twice[j] * here.by_q + h * integrals.once[j] * here.by_qd;
+      const double by_angle = h * h * integrals.twice[j];
+      const double by_rate = h * integrals.once[j];
+      for (int r = 0; r < n; ++r) {
+        for (int c = 0; c < n; ++c) {
+          system(i * n + r, j * n + c) -= by_angle * here.by_q(r, c) + by_rate * here.by_qd(r, c);
+        }
+      }
     }
     right.middleRows(i * n, n) =
         here.by_q * (angles + points.theta[i] * h * rates) + here.by_qd * rates + here.by_name;
   }
   const Matrix found = system.partialPivLu().solve(right);  // d(dqd)/dt at the points, (s n, k)
 
-  // The highest of Legendre's coefficients say how well a polynomial of this degree fits.
-  constexpr double converged = 1e-13;
-  constexpr int most_halvings = 12;
-  Matrix coefficients = Matrix::Zero(s * n, k);
-  for (int p = 0; p < s; ++p) {
-    for (int j = 0; j < s; ++j) {
-      coefficients.middleRows(p * n, n) += points.to_legendre(p, j) * found.middleRows(j * n, n);
-    }
-  }
-  const double left_out = coefficients.bottomRows(n).cwiseAbs().maxCoeff();
-  const double size = now.cwiseAbs().maxCoeff() + std::abs(h) * coefficients.cwiseAbs().maxCoeff();
-  if (std::abs(h) * left_out > std::sqrt(converged) * size && halvings < most_halvings) {
+  if (!has_converged(points, found, h)) {
     const double middle = 0.5 * (from + to);
+    if (halvings == most_halvings_of_step || middle == from || middle == to) {
+      refuse_from(t_start + from * step.h,
+                  "the motion has a corner there, or grows beyond numbers");
+      return;
+    }
     advance(step, from, middle, halvings + 1);
-    advance(step, middle, to, halvings + 1);
+    if (refusal.empty()) advance(step, middle, to, halvings + 1);
     return;
   }
   now.topRows(n) += h * rates;
@@ -276,8 +327,14 @@ void Sensitivities::keep(Store store, const std::vector<double>& t_eval) {
   along_->t_eval = t_eval;
 }
 
-void Sensitivities::starts(double t, std::span<const double> /*y*/) {
+void Sensitivities::starts(double t, std::span<const double> y) {
+  if (along_->has_started) throw std::invalid_argument("sensitivities: have seen a run already");
+  if (y.size() < states()) {
+    throw std::invalid_argument("sensitivities: are for a scene with more links than the run's");
+  }
+  along_->has_started = true;
   along_->t_start = t;
+  along_->choose_modes_at(t, View(y.data(), 2 * along_->n));
   const bool is_asked_for = !along_->t_eval.empty() && along_->t_eval.front() == t;
   if (is_asked_for) ++along_->next_time;
   if (!along_->keeps_times || is_asked_for) along_->keep_now();
@@ -285,18 +342,25 @@ void Sensitivities::starts(double t, std::span<const double> /*y*/) {
 
 void Sensitivities::steps(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
-  const double middle = 0.5 * step.share;
-  along_->choose_modes_at(along_->t_start + middle * step.h, along_->state(step, middle));
+  if (along_->refusal.empty()) {
+    const double middle = 0.5 * step.share;
+    const double t = along_->t_start + middle * step.h;
+    try {
+      along_->choose_modes_at(t, along_->state(step, middle));
+    } catch (const std::invalid_argument& error) {
+      along_->refuse_from(along_->t_start, error.what());
+    }
+  }
   // A time that is kept is the end of a part: there, the order is highest.
   double from = 0.0;
   for (; along_->keeps_times && along_->is_due(step); ++along_->next_time) {
     const double t = along_->t_eval[along_->next_time];
     const double to = t == step.t ? step.share : (t - along_->t_start) / step.h;
-    along_->advance(step, from, to, 0);
+    if (along_->refusal.empty()) along_->advance(step, from, to, 0);
     along_->keep_now();
     from = to;
   }
-  if (from != step.share) along_->advance(step, from, step.share, 0);
+  if (from != step.share && along_->refusal.empty()) along_->advance(step, from, step.share, 0);
   along_->t_start = step.t;
   if (along_->keeps_times) return;
   if (along_->keeps_end) along_->values.clear();
@@ -305,6 +369,7 @@ void Sensitivities::steps(const WatchedStep& step) {
 
 void Sensitivities::jumps(double /*t*/, std::span<const double> /*y*/) {}
 
+const std::string& Sensitivities::refusal() const { return along_->refusal; }
 const std::vector<double>& Sensitivities::values() const { return along_->values; }
 std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * along_->n); }
 std::size_t Sensitivities::names() const { return static_cast<std::size_t>(along_->k); }

@@ -7,7 +7,8 @@
 ///
 /// They are linear, so each step of the run is a linear system: d(dqd)/dt is the polynomial that
 /// holds at the s points of a Gauss quadrature, along the run's own dense output. Its order at the
-/// end of a step is 2 s. A step in which the polynomial has not converged is halved. The
+/// end of a step is 2 s. A step in which the polynomial has not converged is halved, again and
+/// again at a kink; where it never converges, there are no derivatives from there on (NaN). The
 /// derivatives of qdd are those of linearize(): exact to rounding.
 ///
 /// The laws of a scene may have modes, in time or with the state, as long as the accelerations are
@@ -47,6 +48,8 @@ class Sensitivities final : public KeepingWatch {
 
   /// d(q, qd)/d(name), (n_t, 2n, k) row-major.
   const std::vector<double>& values() const;
+  /// Why there are none from some time on, and from when; empty if there are.
+  const std::string& refusal() const;
   std::size_t states() const;  ///< 2n
   std::size_t names() const;   ///< k
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "dynamics/equations_of_motion.hpp"
+#include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/jacobian.hpp"
 #include "dynamics/joint_forces.hpp"
 #include "pendcore/equations.hpp"
@@ -39,6 +40,7 @@ struct Equations::Compiled {
   std::shared_ptr<EffectsOfRun> loads = nullptr;  ///< for reactions
   std::optional<JointForces> joint_forces{};      ///< for the mass matrix
   std::optional<JointForces> responses{};         ///< of free_joints()
+  InverseDynamics<Dual<double>> inverse_dynamics{};
 };
 
 }  // namespace pendcore

@@ -67,33 +67,30 @@ Mechanism<Dual<double>> with_slopes(const Mechanism<double>& plain) {
   return result;
 }
 
-/// Throws for a limit that cuts a table into other pieces when it changes a little.
-void require_same_pieces(const Scene& scene, const Scene& changed, const std::vector<int>& modes,
-                         double t, const std::string& name) {
+/// Whether a change of a limit cuts a table into other pieces before time t.
+bool has_other_pieces(const Scene& changed, const std::vector<int>& modes, double t) {
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    const bool has_table = std::isfinite(scene.effects[i]->last_time());
-    if (!has_table || changed.effects[i]->mode_at(t, 0.0, 0.0, true) == modes[i]) continue;
-    throw std::invalid_argument(
-        "parameter \"" + name +
-        "\": it cuts the table into other pieces close to this value, where "
-        "its derivative is not computed: choose a time or a value farther "
-        "from where the table meets its limit");
+    const bool has_table = std::isfinite(changed.effects[i]->last_time());
+    if (has_table && changed.effects[i]->mode_at(t, 0.0, 0.0, true) != modes[i]) return true;
   }
+  return false;
 }
 
 /// The slope of a function of one number, from its values at steps h, h/2, h/4 and h/8 to either
 /// side, and `here`: central differences, extrapolated as Richardson does. Nothing where a
 /// corner lies among the values, or at the value itself: one-sided slopes then differ by as much at
-/// half the step, and central differences do not settle.
+/// half the step, and central differences do not settle. `size` is that of the numbers from which
+/// the function is rounded.
 constexpr int steps_of_slope = 4;
 std::optional<double> slope_of(double here, const std::array<double, steps_of_slope>& ahead,
-                               const std::array<double, steps_of_slope>& behind, double h) {
+                               const std::array<double, steps_of_slope>& behind, double h,
+                               double size) {
   std::array<double, steps_of_slope> slope, gap;
   for (int k = 0; k < steps_of_slope; ++k, h *= 0.5) {
     slope[k] = (ahead[k] - behind[k]) / (2.0 * h);
     gap[k] = std::abs((ahead[k] - here) - (here - behind[k])) / h;
   }
-  const double rounding = 64.0 * epsilon * std::abs(here) / h;
+  const double rounding = 64.0 * epsilon * std::max(std::abs(here), size) / h;
   double weight = 4.0;
   double without_largest_step = 0.0;
   for (int level = 1; level < steps_of_slope; ++level, weight *= 4.0) {
@@ -151,18 +148,25 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
 }
 
 Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                        const std::string& parameter) {
-  const ParameterChoice choice(scene, {parameter});
+                                        const std::vector<std::string>& names, std::size_t which) {
+  const ParameterChoice choice(scene, names);
   const std::vector<NamedNumber> known = parameters(scene);
-  const double value = std::ranges::find(known, parameter, &NamedNumber::name)->value;
+  std::vector<double> values;
+  values.reserve(names.size());
+  for (const std::string& name : names) {
+    values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
+  }
+  const double value = values[which];
   Mechanism<double> here = mechanism(scene, modes);
   const std::vector<double*> numbers = numbers_of(here);
   const auto numbers_at = [&](double at) {
     Scene copy = scene;
-    choice.set(copy, {&at, 1});
-    Mechanism<double> there = mechanism(copy, modes);
-    require_same_pieces(scene, copy, modes, t, parameter);
+    values[which] = at;
+    choice.set(copy, values);
     std::vector<double> result;
+    if (has_other_pieces(copy, modes, t)) return result;
+    Mechanism<double> there = mechanism(copy, modes);
+    result.reserve(numbers.size());
     for (const double* each : numbers_of(there)) result.push_back(*each);
     return result;
   };
@@ -172,10 +176,12 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
     for (int k = 0; k < steps_of_slope; ++k) {
       ahead[k] = numbers_at(value + std::ldexp(h, -k));
       behind[k] = numbers_at(value - std::ldexp(h, -k));
+      if (ahead[k].empty() || behind[k].empty()) return false;
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const auto slope = slope_of(*numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
-                                  {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h);
+      const auto slope =
+          slope_of(*numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
+                   {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
       if (!slope) return false;
       slopes[i] = *slope;
     }
@@ -188,7 +194,7 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
   while (std::isfinite(value) && !take_slopes(h)) {
     h *= 0x1p-4;
     if (h >= smallest) continue;
-    throw std::invalid_argument("parameter \"" + parameter +
+    throw std::invalid_argument("parameter \"" + names[which] +
                                 "\": a law has a corner at this value: there is no derivative by "
                                 "it; it has one at a slightly larger or smaller value");
   }

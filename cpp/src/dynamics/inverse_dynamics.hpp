@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "arithmetic/dual.hpp"
+#include "dynamics/joint_forces.hpp"
 #include "dynamics/row.hpp"
 #include "effects/laws.hpp"
 #include "pendcore/scene.hpp"
@@ -55,12 +56,13 @@ std::vector<int> modes_at(const Scene& scene, double t, const double* q, const d
 
 Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
 
-/// The same with slopes along a parameter (pendcore/parameters.hpp), at a time. They are right to
-/// some 13 digits: the constants of laws are smooth functions of parameters, whose differences are
-/// extrapolated. Throws std::invalid_argument for a name that the scene does not have, and for a
-/// limit that cuts a table close to that time.
+/// The same with slopes along one of some parameters (pendcore/parameters.hpp), at a time. What
+/// other parameters of the list give stays as it is: the centre of a rod that is named does not
+/// follow its length. Slopes are right to some 13 digits: the constants of laws are smooth
+/// functions of parameters, whose differences are extrapolated. Throws std::invalid_argument for a
+/// name that the scene does not have, and for a value at which a law has a corner.
 Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                        const std::string& parameter);
+                                        const std::vector<std::string>& names, std::size_t which);
 
 /// What laws see of one link or joint (effects/laws.hpp).
 template <class Number>
@@ -97,6 +99,18 @@ class InverseDynamics {
   const std::vector<Number>& torques(const Mechanism<Number>& mechanism, double t, const Numbers& q,
                                      const Numbers& qd, const Numbers& qdd);
 
+  /// The change of qdd with the parameter of dual numbers, (n), where `forces`, with the mass
+  /// matrix of q, say how the free joints respond: -M^-1 J^T d tau/d p.
+  Vector change(const Mechanism<Number>& mechanism, double t, const Numbers& q, const Numbers& qd,
+                const Numbers& qdd, const JointForces& forces)
+    requires(!std::is_same_v<Number, double>)
+  {
+    torques(mechanism, t, q, qd, qdd);
+    less_.resize(static_cast<Eigen::Index>(forces.joints.size()));
+    for (Eigen::Index r = 0; r < less_.size(); ++r) less_[r] = -torques_[forces.joints[r]].slope;
+    return forces.response(less_);
+  }
+
  private:
   struct Waves {
     std::array<Number, 2> sine{}, cosine{};
@@ -107,6 +121,7 @@ class InverseDynamics {
   std::vector<Planar<Number>> inertial_;  ///< m (a_C - g e_y)
   std::vector<RowLoads<Number>> loads_;
   std::vector<Number> torques_;
+  Vector less_;
 };
 
 }  // namespace pendcore

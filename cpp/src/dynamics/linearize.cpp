@@ -8,6 +8,7 @@
 #include "dynamics/contact/held_joints.hpp"
 #include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/kinematics.hpp"
+#include "dynamics/possible_state.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/motor.hpp"
@@ -82,15 +83,27 @@ std::vector<int> modes_beside(const EffectBehaviour& effect, int mode, double t,
 struct DerivativesAt {
   Vector qdd;
   Derivatives by;
+  Matrix by_parameters;  ///< (n, k)
 
   double largest() const {
-    return std::max(
-        {qdd.cwiseAbs().maxCoeff(), by.by_q.cwiseAbs().maxCoeff(), by.by_qd.cwiseAbs().maxCoeff()});
+    return std::max({largest_of(qdd), largest_of(by.by_q), largest_of(by.by_qd)});
   }
-  double difference(const DerivativesAt& other) const {
-    return std::max({(qdd - other.qdd).cwiseAbs().maxCoeff(),
-                     (by.by_q - other.by.by_q).cwiseAbs().maxCoeff(),
-                     (by.by_qd - other.by.by_qd).cwiseAbs().maxCoeff()});
+  bool agree(const DerivativesAt& other) const {
+    const double rounding = rounding_of_derivatives * largest();
+    const Vector columns = by_parameters.cwiseAbs().colwise().maxCoeff().transpose();
+    const Matrix differences = (by_parameters - other.by_parameters).cwiseAbs();
+    for (Eigen::Index k = 0; k < columns.size(); ++k) {
+      if (largest_of(differences.col(k)) > rounding_of_derivatives * columns[k]) return false;
+    }
+    return largest_of(qdd - other.qdd) <= rounding &&
+           largest_of(by.by_q - other.by.by_q) <= rounding &&
+           largest_of(by.by_qd - other.by.by_qd) <= rounding;
+  }
+
+ private:
+  template <class Numbers>
+  static double largest_of(const Numbers& numbers) {
+    return numbers.size() == 0 ? 0.0 : numbers.cwiseAbs().maxCoeff();
   }
 };
 
@@ -133,19 +146,6 @@ Vector torques_of(const Scene& scene, const JointForces& forces, const Input& in
   return torques;
 }
 
-/// The torques in `joints` that change the accelerations as one unit of a parameter does. They are
-/// opposite to those that the same motion takes more.
-Vector torques_of_parameter(const Scene& scene, const JointForces& forces,
-                            const std::string& parameter, double t, const Numbers& q,
-                            const Numbers& qd, const Numbers& qdd) {
-  const std::vector<int> modes = modes_at(scene, t, q.data(), qd.data());
-  const auto all = InverseDynamics<Dual<double>>().torques(
-      mechanism_along(scene, modes, t, parameter), t, q, qd, qdd);
-  Vector torques(forces.joints.size());
-  for (Eigen::Index r = 0; r < torques.size(); ++r) torques[r] = -all[forces.joints[r]].slope;
-  return torques;
-}
-
 }  // namespace
 
 Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd,
@@ -155,51 +155,76 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
   const Scene& scene = compiled_->scene;
   const EquationsOfMotion& equations = compiled_->equations;
   const Eigen::Index n = q.size();
+  require_possible(scene, {"q", q.span()}, {"qd", qd.span()});
   require_inside_stops(scene, q.data());
-  const auto here = [&] {
-    DerivativesAt found{.qdd = Vector(n), .by = {.by_q = Matrix(n, n), .by_qd = Matrix(n, n)}};
-    (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
-    accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
-    return found;
-  };
+  Linearization result{.drift = Vector(2 * n),
+                       .A = Matrix::Zero(2 * n, 2 * n),
+                       .B = Matrix::Zero(2 * n, static_cast<Eigen::Index>(inputs.size()))};
+  std::vector<Eigen::Index> of_parameters;  // their columns
+  std::vector<std::string> names;
+  if (!inputs.empty()) {
+    JointForces& forces = compiled_->free_joints();
+    forces.set_mass_matrix(q.data());
+    forces.set_up();
+    for (std::size_t k = 0; k < inputs.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      if (inputs[k].kind == Input::Kind::parameter) {
+        of_parameters.push_back(column);
+        names.push_back(inputs[k].parameter);
+      } else {
+        result.B.col(column).tail(n) = forces.response(torques_of(scene, forces, inputs[k]));
+      }
+    }
+  }
+
   if (!compiled_->derivatives) compiled_->derivatives.emplace(scene, equations);
   if (equations.effects) choose_modes(*equations.effects, t, q.data(), qd.data(), true);
+  std::vector<int> modes = modes_at(scene, t, q.data(), qd.data());
+  const auto here = [&] {
+    DerivativesAt found{
+        .qdd = Vector(n),
+        .by = {.by_q = Matrix(n, n), .by_qd = Matrix(n, n)},
+        .by_parameters = Matrix(n, static_cast<Eigen::Index>(of_parameters.size()))};
+    (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
+    accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      found.by_parameters.col(static_cast<Eigen::Index>(k)) =
+          compiled_->inverse_dynamics.change(mechanism_along(scene, modes, t, names, k), t, q, qd,
+                                             found.qdd, compiled_->free_joints());
+    }
+    return found;
+  };
   const DerivativesAt found = here();
+  if (!std::isfinite(found.largest())) {
+    throw std::invalid_argument("t = " + text(t) +
+                                ": a law of an effect is not finite there: choose a time within "
+                                "its table, or another state");
+  }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectBehaviour& effect = *scene.effects[i];
     if (!effect.has_modes()) continue;
     const int joint = effect.joint();
     const double phi = joint > 0 ? relative(q.data(), joint) : 0.0;
     const double phid = joint > 0 ? relative(qd.data(), joint) : 0.0;
-    const int mode = equations.effects->modes[i];
+    const int mode = modes[i];
     const bool is_in_time = effect.mode_at(t, phi, phid, false) != mode;
     for (const int other :
          modes_beside(effect, mode, t, phi, phid, equations.held_joints->natural_speed())) {
+      modes[i] = other;
       equations.effects->put_mode(i, other);
-      const double difference = here().difference(found);
+      const bool is_smooth = here().agree(found);
+      modes[i] = mode;
       equations.effects->put_mode(i, mode);
-      if (difference <= rounding_of_derivatives * found.largest()) continue;
-      refuse_corner(scene, i, t, is_in_time);
+      if (!is_smooth) refuse_corner(scene, i, t, is_in_time);
     }
   }
 
-  Linearization result{.drift = Vector(2 * n),
-                       .A = Matrix::Zero(2 * n, 2 * n),
-                       .B = Matrix::Zero(2 * n, static_cast<Eigen::Index>(inputs.size()))};
   result.drift << qd, found.qdd;
   result.A.topRightCorner(n, n).setIdentity();
   result.A.bottomLeftCorner(n, n) = found.by.by_q;
   result.A.bottomRightCorner(n, n) = found.by.by_qd;
-  if (inputs.empty()) return result;
-  JointForces& forces = compiled_->free_joints();
-  forces.set_mass_matrix(q.data());
-  forces.set_up();
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const Vector torques =
-        inputs[k].kind == Input::Kind::parameter
-            ? torques_of_parameter(scene, forces, inputs[k].parameter, t, q, qd, found.qdd)
-            : torques_of(scene, forces, inputs[k]);
-    result.B.col(static_cast<Eigen::Index>(k)).tail(n) = forces.response(torques);
+  for (std::size_t k = 0; k < of_parameters.size(); ++k) {
+    result.B.col(of_parameters[k]).tail(n) = found.by_parameters.col(static_cast<Eigen::Index>(k));
   }
   return result;
 }
@@ -208,27 +233,37 @@ Vector Equations::trim(double t, const Numbers& q, const std::vector<int>& joint
   const FloatingPointEnvironment ieee;
   const Scene& scene = compiled_->scene;
   const Vector rest = Vector::Zero(q.size());
+  compiled_->require_state(q, rest);
+  require_possible(scene, {"q", q.span()}, {"the rates of rest", Numbers(rest).span()});
   const Vector wanted = inverse_dynamics(t, q, rest, rest);
   Scene driven = scene;
   Vector torques(joints.size());
   std::vector<bool> is_driven(scene.links.size());
-  double size = wanted.cwiseAbs().maxCoeff();
-  for (const Link& link : scene.links) size += std::abs(scene.gravity) * link.mass * link.length;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     require_joint(scene, joints[k]);
+    if (is_driven[joints[k] - 1]) {
+      throw std::invalid_argument(input_name(joints[k]) + ": stands twice");
+    }
     torques[static_cast<Eigen::Index>(k)] = wanted[joints[k] - 1];
     is_driven[joints[k] - 1] = true;
     driven.effects.push_back(Motor{.joint = joints[k], .constant = wanted[joints[k] - 1]});
   }
+  if (!wanted.allFinite()) throw std::invalid_argument("q: a law of an effect is not finite there");
   const Vector qdd = Equations(driven).accelerations(t, q, rest);
-  const Matrix mass = mass_matrix(q);
+  const Inertia inertia(scene);
+  double weight = 0.0;  // the moments of all weights beyond a joint, were the links level
+  double beyond = std::abs(scene.gravity) * inertia.payload_mass;
   std::string told;
-  for (int j = 1; j <= qdd.size(); ++j) {
-    const double moment = mass(j - 1, j - 1) * relative(qdd.data(), j);
-    if (is_driven[j - 1] || std::abs(moment) <= rounding_of_derivatives * size) continue;
-    if (std::abs(wanted[j - 1]) <= rounding_of_derivatives * size) continue;
-    told += (told.empty() ? "joint " : " and joint ") + std::to_string(j) + " takes " +
-            text(wanted[j - 1]) + " N m";
+  for (int j = static_cast<int>(qdd.size()); j >= 1; --j) {
+    const Link& link = scene.links[j - 1];
+    weight += (beyond + std::abs(scene.gravity) * link.mass) * link.length;
+    beyond += std::abs(scene.gravity) * link.mass;
+    const double rounding = rounding_of_derivatives * (weight + std::abs(wanted[j - 1]));
+    const double moment = inertia.links[j - 1].diagonal * relative(qdd.data(), j);
+    if (is_driven[j - 1] || std::abs(moment) <= rounding) continue;
+    if (std::abs(wanted[j - 1]) <= rounding) continue;
+    told = "joint " + std::to_string(j) + " takes " + text(wanted[j - 1]) + " N m" +
+           (told.empty() ? "" : " and ") + told;
   }
   if (told.empty()) return torques;
   throw std::invalid_argument("q: these angles do not rest: " + told +

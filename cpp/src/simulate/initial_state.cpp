@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "dynamics/kinematics.hpp"
+#include "dynamics/possible_state.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
@@ -30,47 +31,20 @@ void check_numbers(const char* name, std::span<const double> values, std::size_t
   }
 }
 
-void check_stop(const JointStop& stop, const std::string& name, std::span<const double> q0,
-                bool backward) {
-  const auto& [lower, upper] = stop.range;
-  const double phi = relative(q0.data(), stop.joint);
-  const double rounding = 1e-12 * std::max(1.0, std::abs(phi));
-  if (!(phi >= lower - rounding && phi <= upper + rounding)) {
-    refuse("q0: angle of joint " + std::to_string(stop.joint), phi,
-           text(lower) + " to " + text(upper) + " rad, the range of " + name);
-  }
-  if (backward && stop.restitution < 1.0) {
-    throw std::invalid_argument(
-        "the run goes backward: " + name +
-        ": with a restitution below 1 the past is not unique: run it forward");
-  }
-}
-
 /// Checks what the effects of a scene require of a start and of an interval.
 void check_effects_at_start(const Scene& scene, std::span<const double> q0,
                             std::span<const double> qd0, double t0, double t_end) {
+  require_possible(scene, {"q0", q0}, {"qd0", qd0});
+  if (!(t_end < t0)) return;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const auto name = [&scene, i] { return effect_name(scene, i); };
-    if (t_end < t0 && scene.effects[i]->holding_torque()) {
-      throw std::invalid_argument("the run goes backward: " + name() +
-                                  ": with dry friction the past is not unique: run it forward");
+    const std::string backward = "the run goes backward: " + effect_name(scene, i) + ": with ";
+    if (scene.effects[i]->holding_torque()) {
+      throw std::invalid_argument(backward + "dry friction the past is not unique: run it forward");
     }
-    if (const auto* stop = scene.effects[i].get_if<JointStop>()) {
-      check_stop(*stop, name(), q0, t_end < t0);
-    }
-    const auto* lock = scene.effects[i].get_if<Lock>();
-    if (lock == nullptr) continue;
-    const std::string joint = std::to_string(lock->joint);
-    const double phi = relative(q0.data(), lock->joint);
-    if (lock->angle && !(std::abs(phi - *lock->angle) <= 1e-9 * std::max(1.0, std::abs(phi)))) {
-      refuse(
-          "q0: angle of joint " + joint, phi,
-          text(*lock->angle) + " rad, as " + name() + " says: start there, or leave its angle out");
-    }
-    const double rate = relative(qd0.data(), lock->joint);
-    if (!(std::abs(rate) <= 1e-12 * std::abs(qd0[lock->joint - 1]))) {
-      refuse("qd0: rate of joint " + joint, rate, "0 (rad/s), because " + name() + " locks it");
-    }
+    const auto* stop = scene.effects[i].get_if<JointStop>();
+    if (stop == nullptr || stop->restitution >= 1.0) continue;
+    throw std::invalid_argument(backward +
+                                "a restitution below 1 the past is not unique: run it forward");
   }
 }
 

@@ -43,13 +43,6 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
     if (end.has_too_many_turns()) return end;
   }
   const double t_end = end.is_within() ? time_in_step(t_old, h, end.theta, t_new).high : t_new;
-  if (keeps_polynomials_ && t_end != t_old.high) {
-    DenseOutput& dense = solution_.dense;
-    dense.start.push_back(t_old.high);
-    dense.start_low.push_back(t_old.low);
-    dense.h.push_back(h);
-    dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
-  }
   const auto get_end = [&](double* y) {
     if (end.is_within()) {
       output.state_within(polynomial_.data(), end.theta, y);
@@ -66,6 +59,13 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
                    .rows = polynomial_.data(),
                    .degree = static_cast<int>(degree_),
                    .share = end.is_within() ? end.theta : 1.0});
+  }
+  if (keeps_polynomials_ && t_end != t_old.high) {
+    DenseOutput& dense = solution_.dense;
+    dense.start.push_back(t_old.high);
+    dense.start_low.push_back(t_old.low);
+    dense.h.push_back(h);
+    dense.coefficients.insert(dense.coefficients.end(), polynomial_.begin(), polynomial_.end());
   }
   if (!keeps_steps_) sample_before(output, t_old, h, t_end);
   const bool is_at_start = end.is_within() && !solution_.t.empty() && solution_.t.back() == t_end;

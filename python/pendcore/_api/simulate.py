@@ -113,10 +113,10 @@ def simulate(
         raise no_time_span(t_span) from None
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
-    names = asked.pop("sensitivities", None)
+    names = asked.pop("sensitivities", None) or ()
     if error is not None:
         require_options(asked, simulate)
-        if names is not None:
+        if names:
             raise ValueError(
                 f"sensitivities = {names!r}: not with error: give method, rtol and atol"
             )
@@ -124,7 +124,10 @@ def simulate(
         return checked(_solved_to_error(start, error, asked), on_failure)
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
-    watch = None if names is None else _watch_of(scene, names)
+    watch = None
+    if names:
+        names = _names_of(names)
+        watch = _core.Sensitivities(scene._compiled, list(names))
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)
     except TypeError:
@@ -132,7 +135,9 @@ def simulate(
         raise
     solution = Solution(scene, run)
     if watch is not None:
-        solution.sensitivities, solution.sensitivity_names = watch.values, tuple(names)
+        solution.sensitivities, solution.sensitivity_names = watch.values, names
+        if watch.refusal:
+            warn(watch.refusal)
     if run.success:
         if progress is not None or report.bar is not None:
             close(report)
@@ -140,12 +145,15 @@ def simulate(
     return checked(completed(solution, report), on_failure)
 
 
-def _watch_of(scene: Scene, names: Iterable[str]) -> _core.Sensitivities:
-    """Return what finds the derivatives by these names."""
-    listed = [] if isinstance(names, str) else [*names]
-    if not listed or not all(isinstance(name, str) for name in listed):
-        raise TypeError(f'sensitivities = {names!r}: must be a list of names, such as ["q0[1]"]')
-    return _core.Sensitivities(scene._compiled, listed)
+def _names_of(given: object) -> tuple[str, ...]:
+    """Return the names of what a run is to be differentiated by."""
+    wanted = f'sensitivities = {given!r}: must be a list of names, such as ["q0[1]"]'
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise TypeError(wanted)
+    names = tuple(given)
+    if not all(isinstance(name, str) for name in names):
+        raise TypeError(wanted)
+    return names
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:

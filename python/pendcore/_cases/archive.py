@@ -112,13 +112,23 @@ def _loaded(entries: Entries) -> Solution:
     accuracy = None if told is None else Accuracy.from_dict(told)
     verified = ErrorEstimate(**error) if error else None
     solution = Solution(_scene(state), run, case.name, accuracy, verified)
-    if "sensitivities" in entries:
-        solution.sensitivity_names = tuple(map(str, entries["sensitivity_names"]))
-        shape = (*solution.q.shape, len(solution.sensitivity_names))
-        solution.sensitivities = entries["sensitivities"].reshape(shape[0], 2 * shape[1], shape[2])
+    if "sensitivities" in entries or "sensitivity_names" in entries:
+        solution.sensitivities, solution.sensitivity_names = _sensitivities(entries, solution)
     if solution.case() != case:
         raise ValueError("its case is not that of its run")
     return solution
+
+
+def _sensitivities(entries: Entries, solution: Solution) -> tuple[Any, tuple[str, ...]]:
+    """Return the derivatives of a run and their names, or raise an error for what are none."""
+    values, names = entries["sensitivities"], entries["sensitivity_names"]
+    if names.dtype.kind != "U" or names.ndim != 1:
+        raise ValueError("the names of its sensitivities are no texts")
+    known = tuple(names.tolist())
+    _core.Sensitivities(solution.scene._compiled, list(known))
+    if values.dtype != float or values.shape != (*solution.y.T.shape, len(known)):
+        raise ValueError("its sensitivities do not fit its states")
+    return values, known
 
 
 def _group(entries: Entries, prefix: str) -> dict[str, Any]:

@@ -224,5 +224,6 @@ def case_of(solution: Solution) -> Case:
     start = {key: asked.pop(key) for key in ("q0", "qd0")}
     t_span = (asked.pop("t_start"), asked.pop("t_end"))
     asked["events"] = tuple(solution.events_asked_for())
+    asked["sensitivities"] = solution.sensitivity_names or None
     options = {key: value for key, value in asked.items() if value != RUN_DEFAULTS[key]}
     return Case(scene=solution.scene, **start, t_span=t_span, name=solution.name, options=options)

@@ -20,7 +20,7 @@ from pendcore._scene.scene import Scene
 from pendcore.effects import KINDS, PARTS, made
 from pendcore.events import KINDS as EVENT_KINDS
 from pendcore.events import Event, Function
-from pendcore.options import RUN_DEFAULTS
+from pendcore.options import OPTIONS, RUN_DEFAULTS
 
 KEYS = {
     "": ("name", "gravity", "link", "effect", "event", "start", "run", "map"),
@@ -31,6 +31,8 @@ KEYS = {
     "run": ("t_start", "t_end", *(key for key in RUN_DEFAULTS if key != "events")),
 }
 """The known keys of every kind of table; "" stands for what is above all tables."""
+
+_OF_TEXTS = {key for key, one in OPTIONS.items() if one.annotation.startswith("Iterable[str]")}
 
 MOST_TIMES = 1_000_000
 """That a few words of a file may stand for in ``t_eval``."""
@@ -223,7 +225,8 @@ def _run(text: TomlText) -> tuple[tuple[float, float], dict[str, Any]]:
         if key == "t_eval" and isinstance(value, dict):
             options[key] = _even_times(text, value)
         elif isinstance(value, list):
-            text.numbers(("run", key))
+            if key not in _OF_TEXTS:
+                text.numbers(("run", key))
         elif not isinstance(value, int | float | str):
             raise text.error(("run", key), f"{key} = {value!r}: must be a number, text or a list")
     return (t_start, text.number(("run", "t_end"))), options

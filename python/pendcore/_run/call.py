@@ -81,6 +81,11 @@ def resumed(
     progress: Progress = None,
 ) -> Solution:
     """Go on with a run; see `pendcore.Solution.resume`."""
+    if result.sensitivity_names:
+        raise ValueError(
+            f"sensitivities = {list(result.sensitivity_names)!r}: are not continued: simulate from "
+            "the start to the later end, or from here with sensitivities to q0 and qd0"
+        )
     report = callback(progress)
     run = result._run.resume(t_end, t_eval, max_steps, time_limit, report)
     return completed(Solution(result.scene, run, result.name), report)

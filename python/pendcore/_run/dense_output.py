@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.handed_over import forget_inner_runs
 from pendcore._run.call import Choice, Start, resumed, run
@@ -51,8 +52,12 @@ def _simulated_anew(solution: Solution) -> Solution:
     most = whole + 1 if solution.success else max(whole, 1)
     options = asked | {"store": "dense", "max_steps": most, "time_limit": None}
     choice = Choice(*(options.pop(name) for name in Choice._fields))
-    again = run(start, choice, progress=None, **options)
+    names = solution.sensitivity_names
+    watch = _core.Sensitivities(solution.scene._compiled, list(names)) if names else None
+    again = run(start, choice, progress=None, watch=watch, **options)
     again.name = solution.name
+    if watch is not None:
+        again.sensitivities, again.sensitivity_names = watch.values, names
     # A run that was resumed has passed events that end a run.
     while again.status == "event" and again._run.t_reached != solution._run.t_reached:
         most = max(whole + solution.success - _attempts(again), 1)

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any, TypeVar
 
 import numpy as np
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, did_you_mean, positive, whole_number
+from pendcore._messages.arguments import Floats, positive, whole_number
 
-PIVOT = ("pivot.x", "pivot.y")
 Name = TypeVar("Name")
 _TORQUE = re.compile(r"torque\[(\d+)\]")
 _OUTPUT = re.compile(r"(q|qd|qdd|phi|phid|x|y|vx|vy)\[(\d+)\]")
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, repr=False)
 class Linearization:
     """The motion close to a state ``x_0 = (q, qd)``, as a linear system.
 
@@ -59,6 +57,11 @@ class Linearization:
     outputs: tuple[str, ...]
     dt: float | None = None
 
+    def __repr__(self) -> str:
+        time = "continuous time" if self.dt is None else f"steps of {self.dt:g} s"
+        named = f"inputs {', '.join(self.inputs) or 'none'}; outputs {', '.join(self.outputs)}"
+        return f"<Linearization, {time}: {named}>"
+
     def discretize(self, dt: float) -> Linearization:
         """Return the system that leads from one time to the next, with inputs held in between.
 
@@ -92,7 +95,10 @@ class Linearization:
         n, k = self.B.shape
         both = np.zeros((n + k + 1, n + k + 1))
         both[:n] = np.hstack([self.A, self.B, self.drift[:, np.newaxis]])
-        A, B, drift = np.split(_core.matrix_exponential(both * step)[:n], [n, n + k], axis=1)
+        led = _core.matrix_exponential(both * step)
+        if not np.all(np.isfinite(led)):
+            raise ValueError(f"dt = {dt}: in this time the system grows beyond all numbers")
+        A, B, drift = np.split(led[:n], [n, n + k], axis=1)
         return replace(self, A=A, B=B, drift=drift[:, 0], dt=step)
 
     def to_control(self) -> Any:
@@ -109,10 +115,12 @@ class Linearization:
         """
         import control
 
-        if np.any(np.abs(self.drift) > 1e-9 * max(1.0, float(np.abs(self.A).max()))):
+        still = 1e-9 * max(1.0, float(np.abs(self.A).max()))
+        if np.any(np.abs(self.drift) > still * (1.0 if self.dt is None else self.dt)):
             raise ValueError(
-                f"drift = {self.drift}: the state moves without input, and python-control's "
-                "systems have an equilibrium at 0: linearize at one, such as `trim` finds"
+                f"drift = {self.drift}: the state moves, and python-control's systems rest at 0: "
+                "give the torques that hold it (linearize(..., torques=scene.trim(...))), or take "
+                "an equilibrium, as scene.explain(q=...) finds them"
             )
         n = self.x.size // 2
         states = [f"{kind}[{i}]" for kind in ("q", "qd") for i in range(1, n + 1)]
@@ -122,23 +130,29 @@ class Linearization:
 
 
 def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
-    """Return a list of names as a tuple; a name alone is none."""
+    """Return a list of names as a tuple, in which none stands twice; a name alone is none."""
     if isinstance(given, str) or not isinstance(given, Iterable):
-        raise TypeError(f"{argument} = {given!r}: must be a list of names, such as [{given!r}]")
-    return tuple(given)
+        raise TypeError(
+            f'{argument} = {given!r}: must be a list of names, such as ["q[1]", "q[2]"]'
+        )
+    names = tuple(given)
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{argument}: {name!r} stands twice")
+    return names
 
 
-@lru_cache
 def known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
     """Return inputs as the core takes them, a torque by its joint, and their names."""
     given: list[int | str] = []
     for one in inputs:
         place = _TORQUE.fullmatch(one) if isinstance(one, str) else None
         if place is not None:
-            given.append(int(place[1]))
+            given.append(whole_number("inputs", int(place[1])))
         else:
-            given.append(one if isinstance(one, str) else whole_number("inputs", one))
-    return tuple(given), tuple(one if isinstance(one, str) else f"torque[{one}]" for one in given)
+            given.append(str(one) if isinstance(one, str) else whole_number("inputs", one))
+    names = (one if isinstance(one, str) else f"torque[{one}]" for one in given)
+    return tuple(given), tuple_of_names("inputs", names)
 
 
 @lru_cache
@@ -182,22 +196,29 @@ def output_rows(
     for row, name in enumerate(outputs):
         place = _OUTPUT.fullmatch(name) if isinstance(name, str) else None
         if place is None or not 1 <= int(place[2]) <= n:
-            known = [f"{kind}[{i}]" for kind in kinds for i in range(1, n + 1)]
-            raise ValueError(f"outputs: {name!r} is none: {did_you_mean(str(name), known)}")
+            listed = ", ".join(f"{kind}[i]" for kind in kinds)
+            raise ValueError(f"outputs: {name!r}: must be one of {listed}, i from 1 to {n}")
         there[row], C[row], D[row] = (each[int(place[2]) - 1] for each in kinds[place[1]])
     return C, D, there
 
 
-def derivative(
-    function: Callable[[Mapping[str, float]], Floats], name: str, value: float
-) -> Floats:
-    """Return the derivative of a smooth function by a parameter, to some 13 digits.
-
-    Central differences are extrapolated, as Richardson does.
-    """
-    steps = [(abs(value) / 16 or 1.0) / 2**k for k in range(4)]
-    found = [(function({name: value + h}) - function({name: value - h})) / (2 * h) for h in steps]
-    for level in range(1, len(steps)):
-        found = [after + (after - before) / (4**level - 1) for before, after in pairwise(found)]
-    best: Floats = found[0]
-    return best
+def ends_by_parameter(effects: Sequence[Any], name: str, t: float, x: Floats) -> Floats:
+    """Return the derivatives of x, y, vx and vy of the ends of the links by a parameter, (4, n)."""
+    q, qd = np.split(x, 2)
+    found = np.zeros((4, len(q)))
+    if place := re.fullmatch(r"link\[(\d+)\]\.length", name):
+        i = int(place[1]) - 1  # the end of this link, and those of the links beyond it
+        s, c = np.sin(q[i]), np.cos(q[i])
+        found[:, i:] = np.array([[c], [s], [-s * qd[i]], [c * qd[i]]])
+    elif place := re.fullmatch(r"effect\[(\d+)\]\.([xy])\.(\w+)", name):  # of a driven pivot
+        wave = getattr(effects[int(place[1]) - 1], place[2])
+        A, w, phase = wave.amplitude, wave.angular_frequency, wave.phase
+        s, c = np.sin(w * t + phase), np.cos(w * t + phase)
+        slopes = {
+            "amplitude": (s, w * c),
+            "angular_frequency": (A * t * c, A * c - A * w * t * s),
+            "phase": (A * c, -A * w * s),
+        }
+        axis = "xy".index(place[2])
+        found[axis], found[axis + 2] = slopes[place[3]]
+    return found

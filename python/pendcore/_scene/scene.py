@@ -21,6 +21,7 @@ from pendcore._messages.arguments import (
     finite_array,
     link_array,
     number,
+    numbers,
     time_span,
     vector,
 )
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
 
 _PLACE = re.compile(r"(link|effect)\[(\d+)\]\.(.+)")
 """The name of a parameter, as the core lists them (cpp/include/pendcore/parameters.hpp)."""
-_MOVES_ENDS = re.compile(r"link\[\d+\]\.length|effect\[\d+\]\.[xy]\..+")
-"""The names of parameters that change places: lengths, and the sinusoids of driven pivots."""
 MOST_ROWS = 20
 """The most links in the table of a notebook."""
 
@@ -302,6 +301,7 @@ class Scene:
         *,
         inputs: Iterable[int | str] = (),
         outputs: Iterable[str] | None = None,
+        torques: npt.ArrayLike | None = None,
     ) -> Linearization:
         """The motion close to a state, as the linear system of a controller.
 
@@ -317,24 +317,31 @@ class Scene:
             A joint, for a torque in it beside what its effects do (N m; also ``"torque[2]"``);
             ``"pivot.x"`` or ``"pivot.y"``, for an acceleration of the pivot beside that of a drive
             (m/s^2; to the right, and downward); or the name of one of `parameters`, for a change of
-            it.
+            it. A link that is a uniform rod stays one, unless its centre or inertia is an input,
+            too.
         outputs : iterable of str, optional
             ``"q[1]"``, ``"qd[1]"``, ``"qdd[1]"`` of a link; ``"phi[2]"``, ``"phid[2]"`` of a joint,
             relative to the link before; ``"x[2]"``, ``"y[2]"``, ``"vx[2]"``, ``"vy[2]"`` of the end
-            of a link. The state, unless given.
+            of a link. The state, unless given. Where ``"pivot.x"`` or ``"pivot.y"`` is an input,
+            places and velocities change relative to the pivot.
+        torques : array_like, (k,), optional
+            Torques that are held in the joints of ``inputs`` at that state, N m: those of `trim`
+            make it an equilibrium.
 
         Raises
         ------
         ValueError
             Where the motion has no derivative: at a stop, in a joint at rest under dry friction,
             where two laws of an effect meet; the message says on which side it has one. Also for
-            a torque in a joint that a `Lock` holds, and for names that are not known.
+            a torque in a joint that a `Lock` holds, for angles and rates that locks and stops do
+            not allow, and for names that are not known.
 
         Notes
         -----
         The derivatives are those of the motion itself, by dual numbers through its equations, and
         not of a step of some method. Functions of the user's alone are differentiated by central
-        differences, which are right to some ten digits.
+        differences, which are right to some ten digits. A joint that is locked keeps its angle and
+        rate in the state, which no input moves: a regulator takes the other states.
 
         Examples
         --------
@@ -348,11 +355,13 @@ class Scene:
 
         n = len(self.links)
         driven, names = linearization.known_inputs(linearization.tuple_of_names("inputs", inputs))
-        found = self._compiled.linearize(t, q, qd, driven)
+        if torques is not None and any(isinstance(one, str) for one in driven):
+            raise ValueError(f"torques: are of joints, and the inputs are {', '.join(names)}")
+        found = self._compiled.linearize(t, q, qd, driven, torques)
         if found is None:  # a state of plain numbers costs three microseconds, as in a loop
-            (time,) = vector("t", t, 1, "s")
-            state = vector("q", q, n, "rad"), vector("qd", qd, n, "rad/s")
-            found = self._compiled.linearize(time, *state, driven)
+            (t,) = vector("t", t, 1, "s")
+            state = numbers("q", q, "rad", n), vector("qd", qd, n, "rad/s")
+            found = self._compiled.linearize(t, *state, driven, torques)
         assert found is not None
         x, drift, A, B = found
         C, D, of_state = linearization.state_as_output(n, len(driven))
@@ -360,18 +369,12 @@ class Scene:
         if outputs is None:
             return system
         wanted = linearization.tuple_of_names("outputs", outputs)
-        here, (angles, rates) = self.parameters(), np.split(x, 2)
-
-        def ends(changes: Mapping[str, float]) -> Floats:
-            scene = self.with_parameters(changes)
-            return np.hstack([scene.positions(t, angles), scene.velocities(t, angles, rates)])[1:].T
-
-        ends_by = np.zeros((4, n, len(names)))
-        for column, name in enumerate(names):
-            if _MOVES_ENDS.fullmatch(name):
-                ends_by[..., column] = linearization.derivative(ends, name, here[name])
-        lengths = np.array([link.length for link in self.links])
-        C, D, values = linearization.output_rows(system, lengths, ends({}), ends_by, wanted)
+        lengths, (angles, rates) = np.array([link.length for link in self.links]), np.split(x, 2)
+        places = self.positions(t, angles), self.velocities(t, angles, rates)
+        by = [linearization.ends_by_parameter(self.effects, name, t, x) for name in names]
+        ends_by = np.stack(by, axis=-1) if by else np.zeros((4, n, 0))
+        ends = np.hstack(places)[1:].T
+        C, D, values = linearization.output_rows(system, lengths, ends, ends_by, wanted)
         return replace(system, C=C, D=D, outputs_there=values, outputs=wanted)
 
     def inverse_dynamics(
@@ -424,8 +427,8 @@ class Scene:
 
         named = linearization.tuple_of_names("inputs", inputs)
         joints, _ = linearization.known_inputs(named)
-        (time,), angles = vector("t", t, 1, "s"), vector("q", q, len(self.links), "rad")
-        return self._compiled.trim(time, angles, joints)
+        (time,) = vector("t", t, 1, "s")
+        return self._compiled.trim(time, numbers("q", q, "rad", len(self.links)), joints)
 
     def positions(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Pivot, joints and tip, m, (..., n+1, 2): x right, y down; a driven pivot moves.
