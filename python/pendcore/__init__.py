@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from pendcore._api.files import load, read_case
     from pendcore._ensemble.ensemble import Ensemble
     from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
+    from pendcore._scene.linearization import Linearization
     from pendcore.cost.accuracy_cost import AccuracyCost
     from pendcore.cost.horizon import horizon_work
     from pendcore.cost.horizon_work import HorizonWork
@@ -65,6 +66,7 @@ _WHEN_ASKED_FOR = {
     "Ensemble": "pendcore._ensemble.ensemble",
     "Explanation": "pendcore.explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
+    "Linearization": "pendcore._scene.linearization",
     "LyapunovExponents": "pendcore._horizon.lyapunov",
     "accuracy_cost": "pendcore.cost.sweep",
     "derive": "pendcore.derive",  # SymPy is an extra, and takes its time
@@ -105,6 +107,7 @@ __all__ = [
     "HorizonWork",
     "LargestReaction",
     "Ledger",
+    "Linearization",
     "Link",
     "LyapunovExponents",
     "Mobility",

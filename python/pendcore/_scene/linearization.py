@@ -44,6 +44,11 @@ class Linearization:
     dt : float or None
         The step, s, of a system in discrete time (`discretize`), whose ``A`` and ``B`` lead from
         one time to the next: ``x' - x_0 = drift + A (x - x_0) + B u``.
+
+    Examples
+    --------
+    >>> pc.Scene.textbook().linearize([-np.pi / 2, -np.pi / 2], inputs=[1], outputs=["x[2]"])
+    <Linearization, continuous time: inputs torque[1]; outputs x[2]>
     """
 
     A: Floats
