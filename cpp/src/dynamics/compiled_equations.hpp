@@ -34,12 +34,25 @@ struct Equations::Compiled {
     return *responses;
   }
 
+  /// The torques and forces of a motion, but for users' functions, with the effects in some modes.
+  const InverseDynamics<double>& motion(const std::vector<int>& modes, double t, const Numbers& q,
+                                        const Numbers& qd, const Numbers& qdd) {
+    if (!constants || modes != modes_of_constants) {
+      constants = mechanism(scene, modes);
+      modes_of_constants = modes;
+    }
+    of_motion.compute(*constants, t, q, qd, qdd);
+    return of_motion;
+  }
+
   Scene scene;
   EquationsOfMotion equations;
   std::optional<Jacobian> derivatives{};
-  std::shared_ptr<EffectsOfRun> loads = nullptr;  ///< for reactions
-  std::optional<JointForces> joint_forces{};      ///< for the mass matrix
-  std::optional<JointForces> responses{};         ///< of free_joints()
+  std::optional<Mechanism<double>> constants{};  ///< for motion()
+  std::vector<int> modes_of_constants{};
+  InverseDynamics<double> of_motion{};
+  std::optional<JointForces> joint_forces{};  ///< for the mass matrix
+  std::optional<JointForces> responses{};     ///< of free_joints()
   InverseDynamics<Dual<double>> inverse_dynamics{};
 };
 

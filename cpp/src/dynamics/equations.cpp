@@ -1,14 +1,10 @@
 #include "pendcore/equations.hpp"
 
 #include "arithmetic/floating_point_environment.hpp"
-#include "arithmetic/sine_cosine.hpp"
 #include "dynamics/compiled_equations.hpp"
-#include "dynamics/energetics/ledger.hpp"
 #include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
-#include "pendcore/effects/payload.hpp"
-#include "pendcore/mechanics.hpp"
 
 namespace pendcore {
 
@@ -48,33 +44,11 @@ Derivatives Equations::jacobian(double t, const Numbers& q, const Numbers& qd) {
 
 Points Equations::reactions(double t, const Numbers& q, const Numbers& qd) {
   const FloatingPointEnvironment ieee;
-  using PlaneVector = Eigen::RowVector2d;
-  const Scene& scene = compiled_->scene;
   const Vector qdd = accelerations(t, q, qd);
-  if (!compiled_->loads) compiled_->loads = effects_of_run(scene);
-  EffectsOfRun& effects = *compiled_->loads;
-  if (effects.has_modes) choose_modes(effects, t, q.data(), qd.data(), true);
-  Points loads(q.size(), 2);
-  effect_forces(scene, effects, t, q.data(), qd.data(),
-                {loads.data(), static_cast<std::size_t>(loads.size())});
-
-  const PlaneVector gravity(0.0, scene.gravity);
-  Points forces = mass_center_accelerations(scene, t, q, qd, qdd);
-  PlaneVector beyond(0.0, 0.0);  // F_{i,i+1}
-  for (const Payload& payload : effects_of<Payload>(scene)) {
-    // a_tip = a_C + (L - c)(qdd n - qd^2 u)
-    const Eigen::Index i = q.size() - 1;
-    const double rest = scene.links[i].length - scene.links[i].center;
-    double s, c;
-    sine_cosine(q.data() + i, 1, &s, &c);
-    const PlaneVector of_unit_length =
-        qdd[i] * PlaneVector(-s, c) - qd[i] * qd[i] * PlaneVector(c, s);
-    beyond += payload.mass * (forces.row(i) + rest * of_unit_length - gravity);
-  }
-  for (Eigen::Index i = q.size(); i-- > 0;) {
-    beyond += scene.links[i].mass * (forces.row(i) - gravity) - loads.row(i);
-    forces.row(i) = beyond;
-  }
+  const std::vector<int> modes = modes_at(compiled_->scene, t, q.data(), qd.data());
+  const auto& found = compiled_->motion(modes, t, q, qd, qdd).forces();
+  Points forces(q.size(), 2);
+  for (Eigen::Index i = 0; i < q.size(); ++i) forces.row(i) << found[i].x, found[i].y;
   return forces;
 }
 
@@ -90,9 +64,8 @@ Vector Equations::inverse_dynamics(double t, const Numbers& q, const Numbers& qd
     const bool can_stick = effect.holding_torque().has_value();
     if (can_stick && relative(qd.data(), effect.joint()) == 0.0) modes[i] = 0;
   }
-  const std::vector<double> all =
-      InverseDynamics<double>().torques(mechanism(scene, modes), t, q, qd, qdd);
-  Vector torques = View(all.data(), q.size());
+  const auto& found = compiled_->motion(modes, t, q, qd, qdd).torques();
+  Vector torques = View(found.data(), q.size());
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const std::optional<UserLaw> user = scene.effects[i]->user_law(modes[i]);
     if (!user) continue;

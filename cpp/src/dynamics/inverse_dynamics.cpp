@@ -207,9 +207,8 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
 }
 
 template <class Number>
-const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Number>& mechanism,
-                                                            double t, const Numbers& q,
-                                                            const Numbers& qd, const Numbers& qdd) {
+void InverseDynamics<Number>::compute(const Mechanism<Number>& mechanism, double t,
+                                      const Numbers& q, const Numbers& qd, const Numbers& qdd) {
   using Vector2 = Planar<Number>;
   const auto n = static_cast<int>(mechanism.bodies.size());
   sine_.resize(n);
@@ -267,6 +266,7 @@ const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Numb
 
   // From the tip to the pivot.
   torques_.resize(n);
+  forces_.resize(n);
   Vector2 beyond = mechanism.payload_mass * acceleration;  // F_{i,i+1}
   Number torque = mechanism.payload_inertia * Number(qdd[n - 1]);
   for (int i = n; i-- > 0;) {
@@ -277,9 +277,9 @@ const std::vector<Number>& InverseDynamics<Number>::torques(const Mechanism<Numb
     torque += body.inertia * Number(qdd[i]) + body.center * across(inertial_[i]) +
               body.length * across(beyond) - loads_[i].moments;
     beyond = beyond + inertial_[i] - Vector2{loads_[i].fx, loads_[i].fy};
+    forces_[i] = beyond;
     torques_[i] = torque + relative(qdd.data(), i + 1) * body.armature - loads_[i].couples;
   }
-  return torques_;
 }
 
 template class InverseDynamics<double>;

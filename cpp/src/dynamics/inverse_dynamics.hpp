@@ -94,10 +94,13 @@ struct Planar {
 template <class Number>
 class InverseDynamics {
  public:
-  /// tau, N m, (n), from the angles (rad), rates (rad/s) and accelerations (rad/s^2), (n) each.
-  /// Cost: O(n).
-  const std::vector<Number>& torques(const Mechanism<Number>& mechanism, double t, const Numbers& q,
-                                     const Numbers& qd, const Numbers& qdd);
+  /// Computes what a motion takes, from its angles (rad), rates (rad/s) and accelerations
+  /// (rad/s^2), (n) each. Cost: O(n).
+  void compute(const Mechanism<Number>& mechanism, double t, const Numbers& q, const Numbers& qd,
+               const Numbers& qdd);
+
+  const std::vector<Number>& torques() const { return torques_; }        ///< tau, N m, (n)
+  const std::vector<Planar<Number>>& forces() const { return forces_; }  ///< F_{i-1,i}, N, (n)
 
   /// The change of qdd with the parameter of dual numbers, (n), where `forces`, with the mass
   /// matrix of q, say how the free joints respond: -M^-1 J^T d tau/d p.
@@ -105,7 +108,7 @@ class InverseDynamics {
                 const Numbers& qdd, const JointForces& forces)
     requires(!std::is_same_v<Number, double>)
   {
-    torques(mechanism, t, q, qd, qdd);
+    compute(mechanism, t, q, qd, qdd);
     less_.resize(static_cast<Eigen::Index>(forces.joints.size()));
     for (Eigen::Index r = 0; r < less_.size(); ++r) less_[r] = -torques_[forces.joints[r]].slope;
     return forces.response(less_);
@@ -121,6 +124,7 @@ class InverseDynamics {
   std::vector<Planar<Number>> inertial_;  ///< m (a_C - g e_y)
   std::vector<RowLoads<Number>> loads_;
   std::vector<Number> torques_;
+  std::vector<Planar<Number>> forces_;
   Vector less_;
 };
 

@@ -158,23 +158,4 @@ void Ledger::add_drive(double t, const double* qdd, Powers& power) const {
   book(power, Account::drive, x * links_.vx[1] + y * links_.vy[1]);
 }
 
-void effect_forces(const Scene& scene, const EffectsOfRun& effects, double t, const double* q,
-                   const double* qd, std::span<double> forces) {
-  std::ranges::fill(forces, 0.0);
-  if (!effects.has_forces) return;
-  const std::size_t n = scene.links.size();
-  LinkMemory links(scene);
-  links.fill(effects, t, q, qd);
-  for_each_law(effects, t, links, [&](const auto& entry, const auto& at, const auto& loads) {
-    using Row = typename std::remove_cvref_t<decltype(at)>::Value;
-    constexpr std::size_t width = Lanes<Row>::width;
-    for (std::size_t lane_number = 0; lane_number < width; ++lane_number) {
-      const std::size_t i = entry.row * width + lane_number;
-      if (i >= n) break;
-      forces[2 * i] += lane(loads.fx, static_cast<int>(lane_number));
-      forces[2 * i + 1] += lane(loads.fy, static_cast<int>(lane_number));
-    }
-  });
-}
-
 }  // namespace pendcore

@@ -11,8 +11,6 @@
 /// is the integral of k |w|^3; the rest of the power of its drag is the wind's.
 #pragma once
 
-#include <span>
-
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/row.hpp"
 
@@ -59,9 +57,5 @@ class Ledger {
   double force_y_ = 0.0;
   std::vector<double> user_forces_;
 };
-
-/// The forces of the effects on the links, N, (n, 2); zero where none acts.
-void effect_forces(const Scene& scene, const EffectsOfRun& effects, double t, const double* q,
-                   const double* qd, std::span<double> forces);
 
 }  // namespace pendcore
