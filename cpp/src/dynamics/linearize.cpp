@@ -251,19 +251,22 @@ Vector Equations::trim(double t, const Numbers& q, const std::vector<int>& joint
   if (!wanted.allFinite()) throw std::invalid_argument("q: a law of an effect is not finite there");
   const Vector qdd = Equations(driven).accelerations(t, q, rest);
   const Inertia inertia(scene);
-  double weight = 0.0;  // the moments of all weights beyond a joint, were the links level
-  double beyond = std::abs(scene.gravity) * inertia.payload_mass;
+  std::vector<double> moments(scene.links.size());  // of all weights beyond each joint, at most
+  double beyond = inertia.payload_mass;
+  double moment = 0.0;
+  for (std::size_t i = moments.size(); i-- > 0;) {
+    beyond += scene.links[i].mass;
+    moment += std::abs(scene.gravity) * beyond * scene.links[i].length;
+    moments[i] = moment;
+  }
   std::string told;
-  for (int j = static_cast<int>(qdd.size()); j >= 1; --j) {
-    const Link& link = scene.links[j - 1];
-    weight += (beyond + std::abs(scene.gravity) * link.mass) * link.length;
-    beyond += std::abs(scene.gravity) * link.mass;
-    const double rounding = rounding_of_derivatives * (weight + std::abs(wanted[j - 1]));
-    const double moment = inertia.links[j - 1].diagonal * relative(qdd.data(), j);
-    if (is_driven[j - 1] || std::abs(moment) <= rounding) continue;
+  for (int j = 1; j <= qdd.size(); ++j) {
+    const double rounding = rounding_of_derivatives * (moments[j - 1] + std::abs(wanted[j - 1]));
+    const double missing = inertia.links[j - 1].diagonal * relative(qdd.data(), j);
+    if (is_driven[j - 1] || std::abs(missing) <= rounding) continue;
     if (std::abs(wanted[j - 1]) <= rounding) continue;
-    told = "joint " + std::to_string(j) + " takes " + text(wanted[j - 1]) + " N m" +
-           (told.empty() ? "" : " and ") + told;
+    told.append(told.empty() ? "joint " : " and joint ").append(std::to_string(j));
+    told.append(" takes ").append(text(wanted[j - 1])).append(" N m");
   }
   if (told.empty()) return torques;
   throw std::invalid_argument("q: these angles do not rest: " + told +
