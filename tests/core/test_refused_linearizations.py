@@ -132,6 +132,12 @@ def test_bad_input(given: dict[str, Any], told: str) -> None:
         TEXTBOOK.linearize(**({"q": UPRIGHT} | given))
 
 
+def test_what_was_asked_before_does_not_matter() -> None:
+    TEXTBOOK.linearize(UPRIGHT, inputs=[1])
+    with pytest.raises(TypeError, match="inputs = True: must be a whole number"):
+        TEXTBOOK.linearize(UPRIGHT, inputs=[True])
+
+
 def test_one_text_is_no_list_of_inputs() -> None:
     with pytest.raises(TypeError, match=r"inputs = 'pivot\.x': must be a list"):
         TEXTBOOK.linearize(UPRIGHT, inputs="pivot.x")

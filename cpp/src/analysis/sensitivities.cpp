@@ -120,8 +120,8 @@ void require_smooth(const Scene& scene) {
 
 constexpr int most_halvings_of_step = 44;
 
-struct Sensitivities::Along {
-  Along(const Scene& given, const std::vector<std::string>& names)
+struct Sensitivities::Variation {
+  Variation(const Scene& given, const std::vector<std::string>& names)
       : scene(given),
         n(static_cast<int>(given.links.size())),
         k(static_cast<Eigen::Index>(names.size())),
@@ -192,7 +192,7 @@ struct Sensitivities::Along {
   std::string refusal{};
 };
 
-void Sensitivities::Along::require_parameter(const std::string& name) const {
+void Sensitivities::Variation::require_parameter(const std::string& name) const {
   if (name.starts_with("q[") || name.starts_with("qd[")) {
     throw std::invalid_argument("sensitivities: \"" + name +
                                 "\": a start is named q0[i] or qd0[i]");
@@ -201,13 +201,13 @@ void Sensitivities::Along::require_parameter(const std::string& name) const {
 }
 
 /// From a time on, there are no derivatives.
-void Sensitivities::Along::refuse_from(double t, const std::string& why) {
+void Sensitivities::Variation::refuse_from(double t, const std::string& why) {
   refusal = "sensitivities: none after t = " + text(t) + " s: " + why;
   now.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Puts the laws in the modes of the middle of a step.
-void Sensitivities::Along::choose_modes_at(double t, const Vector& y) {
+void Sensitivities::Variation::choose_modes_at(double t, const Vector& y) {
   if (equations.effects) choose_modes(*equations.effects, t, y.data(), y.data() + n, true);
   std::vector<int> chosen = modes_at(scene, t, y.data(), y.data() + n);
   if (modes && chosen == *modes) return;
@@ -217,7 +217,7 @@ void Sensitivities::Along::choose_modes_at(double t, const Vector& y) {
   }
 }
 
-Sensitivities::Along::Point Sensitivities::Along::at(double t, const Vector& y) {
+Sensitivities::Variation::Point Sensitivities::Variation::at(double t, const Vector& y) {
   Point point{.by_q = Matrix(n, n), .by_qd = Matrix(n, n), .by_name = Matrix::Zero(n, k)};
   jacobian(t, y.data(), y.data() + n, point.by_q, point.by_qd);
   if (parameters.empty()) return point;
@@ -232,7 +232,7 @@ Sensitivities::Along::Point Sensitivities::Along::at(double t, const Vector& y) 
   return point;
 }
 
-Vector Sensitivities::Along::state(const WatchedStep& step, double theta) const {
+Vector Sensitivities::Variation::state(const WatchedStep& step, double theta) const {
   const std::size_t size = step.y.size();
   Vector y(2 * n);
   for (int i = 0; i < 2 * n; ++i) {
@@ -246,8 +246,8 @@ Vector Sensitivities::Along::state(const WatchedStep& step, double theta) const 
 /// Whether d(dqd)/dt, with these values at the points, is a polynomial: by the last two of
 /// Legendre's coefficients, for each name alone. Where they fall like a geometric series, the error
 /// at the end of the step is of the order of their square. At a kink they do not.
-bool Sensitivities::Along::has_converged(const Collocation& points, const Matrix& found,
-                                         double h) const {
+bool Sensitivities::Variation::has_converged(const Collocation& points, const Matrix& found,
+                                             double h) const {
   constexpr double rounding = 1e-14;
   constexpr double square_root_of_rounding = 3e-7;
   if (!found.allFinite()) return false;
@@ -270,7 +270,8 @@ bool Sensitivities::Along::has_converged(const Collocation& points, const Matrix
 }
 
 /// Advances through the part of a step between two shares of it.
-void Sensitivities::Along::advance(const WatchedStep& step, double from, double to, int halvings) {
+void Sensitivities::Variation::advance(const WatchedStep& step, double from, double to,
+                                       int halvings) {
   const Collocation& points = collocation_for(step.degree);
   const int s = points.s;
   const double h = (to - from) * step.h;
@@ -316,62 +317,64 @@ void Sensitivities::Along::advance(const WatchedStep& step, double from, double 
 
 Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>& names) {
   require_smooth(scene);
-  along_ = std::make_unique<Along>(scene, names);
+  variation_ = std::make_unique<Variation>(scene, names);
 }
 Sensitivities::~Sensitivities() = default;
 Sensitivities::Sensitivities(Sensitivities&&) noexcept = default;
 
 void Sensitivities::keep(Store store, const std::vector<double>& t_eval) {
-  along_->keeps_end = store == Store::end;
-  along_->keeps_times = store == Store::times || (store == Store::dense && !t_eval.empty());
-  along_->t_eval = t_eval;
+  variation_->keeps_end = store == Store::end;
+  variation_->keeps_times = store == Store::times || (store == Store::dense && !t_eval.empty());
+  variation_->t_eval = t_eval;
 }
 
 void Sensitivities::starts(double t, std::span<const double> y) {
-  if (along_->has_started) throw std::invalid_argument("sensitivities: have seen a run already");
+  if (variation_->has_started)
+    throw std::invalid_argument("sensitivities: have seen a run already");
   if (y.size() < states()) {
     throw std::invalid_argument("sensitivities: are for a scene with more links than the run's");
   }
-  along_->has_started = true;
-  along_->t_start = t;
-  along_->choose_modes_at(t, View(y.data(), 2 * along_->n));
-  const bool is_asked_for = !along_->t_eval.empty() && along_->t_eval.front() == t;
-  if (is_asked_for) ++along_->next_time;
-  if (!along_->keeps_times || is_asked_for) along_->keep_now();
+  variation_->has_started = true;
+  variation_->t_start = t;
+  variation_->choose_modes_at(t, View(y.data(), 2 * variation_->n));
+  const bool is_asked_for = !variation_->t_eval.empty() && variation_->t_eval.front() == t;
+  if (is_asked_for) ++variation_->next_time;
+  if (!variation_->keeps_times || is_asked_for) variation_->keep_now();
 }
 
 void Sensitivities::steps(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
-  if (along_->refusal.empty()) {
+  if (variation_->refusal.empty()) {
     const double middle = 0.5 * step.share;
-    const double t = along_->t_start + middle * step.h;
+    const double t = variation_->t_start + middle * step.h;
     try {
-      along_->choose_modes_at(t, along_->state(step, middle));
+      variation_->choose_modes_at(t, variation_->state(step, middle));
     } catch (const std::invalid_argument& error) {
-      along_->refuse_from(along_->t_start, error.what());
+      variation_->refuse_from(variation_->t_start, error.what());
     }
   }
   // A time that is kept is the end of a part: there, the order is highest.
   double from = 0.0;
-  for (; along_->keeps_times && along_->is_due(step); ++along_->next_time) {
-    const double t = along_->t_eval[along_->next_time];
-    const double to = t == step.t ? step.share : (t - along_->t_start) / step.h;
-    if (along_->refusal.empty()) along_->advance(step, from, to, 0);
-    along_->keep_now();
+  for (; variation_->keeps_times && variation_->is_due(step); ++variation_->next_time) {
+    const double t = variation_->t_eval[variation_->next_time];
+    const double to = t == step.t ? step.share : (t - variation_->t_start) / step.h;
+    if (variation_->refusal.empty()) variation_->advance(step, from, to, 0);
+    variation_->keep_now();
     from = to;
   }
-  if (from != step.share && along_->refusal.empty()) along_->advance(step, from, step.share, 0);
-  along_->t_start = step.t;
-  if (along_->keeps_times) return;
-  if (along_->keeps_end) along_->values.clear();
-  along_->keep_now();
+  if (from != step.share && variation_->refusal.empty())
+    variation_->advance(step, from, step.share, 0);
+  variation_->t_start = step.t;
+  if (variation_->keeps_times) return;
+  if (variation_->keeps_end) variation_->values.clear();
+  variation_->keep_now();
 }
 
 void Sensitivities::jumps(double /*t*/, std::span<const double> /*y*/) {}
 
-const std::string& Sensitivities::refusal() const { return along_->refusal; }
-const std::vector<double>& Sensitivities::values() const { return along_->values; }
-std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * along_->n); }
-std::size_t Sensitivities::names() const { return static_cast<std::size_t>(along_->k); }
+const std::string& Sensitivities::refusal() const { return variation_->refusal; }
+const std::vector<double>& Sensitivities::values() const { return variation_->values; }
+std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * variation_->n); }
+std::size_t Sensitivities::names() const { return static_cast<std::size_t>(variation_->k); }
 
 }  // namespace pendcore

@@ -54,8 +54,8 @@ class Sensitivities final : public KeepingWatch {
   std::size_t names() const;   ///< k
 
  private:
-  struct Along;
-  std::unique_ptr<Along> along_;
+  struct Variation;
+  std::unique_ptr<Variation> variation_;
 };
 
 }  // namespace pendcore

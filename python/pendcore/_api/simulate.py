@@ -113,7 +113,7 @@ def simulate(
         raise no_time_span(t_span) from None
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
-    names = asked.pop("sensitivities", None) or ()
+    names = asked.pop("sensitivities", None) if "sensitivities" in asked else None
     if error is not None:
         require_options(asked, simulate)
         if names:

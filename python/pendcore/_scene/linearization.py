@@ -149,6 +149,14 @@ def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
 
 def known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
     """Return inputs as the core takes them, a torque by its joint, and their names."""
+    # A cache takes True and 1.0 for 1.
+    if all(type(one) in (int, str) for one in inputs):
+        return _known_inputs(inputs)
+    return _known_inputs.__wrapped__(inputs)
+
+
+@lru_cache
+def _known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
     given: list[int | str] = []
     for one in inputs:
         place = _TORQUE.fullmatch(one) if isinstance(one, str) else None

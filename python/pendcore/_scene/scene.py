@@ -273,8 +273,9 @@ class Scene:
     ) -> tuple[Floats, Floats]:
         """Derivatives of the `accelerations` by the angles and by the rates, to the last bits.
 
-        The arguments are as in `accelerations`. Functions of the user's alone are differentiated by
-        differences.
+        The arguments are as in `accelerations`, and so is the side of a law that is smooth only in
+        pieces; `linearize` refuses a state where its sides differ. Functions of the user's alone
+        are differentiated by differences.
 
         Returns
         -------
