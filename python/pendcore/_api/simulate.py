@@ -113,20 +113,20 @@ def simulate(
         raise no_time_span(t_span) from None
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
-    names = asked.pop("sensitivities", None) if "sensitivities" in asked else None
+    wanted = asked.pop("sensitivities", None) if "sensitivities" in asked else None
     if error is not None:
         require_options(asked, simulate)
-        if names:
+        if wanted:
             raise ValueError(
-                f"sensitivities = {names!r}: not with error: give method, rtol and atol"
+                f"sensitivities = {wanted!r}: not with error: give method, rtol and atol"
             )
         start = Start(scene, q0, qd0, t_start, t_end)
         return checked(_solved_to_error(start, error, asked), on_failure)
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
     watch = None
-    if names:
-        names = _names_of(names)
+    if wanted:
+        names = _names_of(wanted)
         watch = _core.Sensitivities(scene._compiled, list(names))
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)

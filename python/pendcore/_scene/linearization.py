@@ -147,12 +147,13 @@ def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
     return names
 
 
-def known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
+def known_inputs(inputs: Iterable[int | str]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
     """Return inputs as the core takes them, a torque by its joint, and their names."""
-    # A cache takes True and 1.0 for 1.
-    if all(type(one) in (int, str) for one in inputs):
-        return _known_inputs(inputs)
-    return _known_inputs.__wrapped__(inputs)
+    given = tuple(inputs) if isinstance(inputs, list | tuple) else tuple_of_names("inputs", inputs)
+    for one in given:
+        if type(one) is not int and type(one) is not str:  # a cache takes True and 1.0 for 1
+            return _known_inputs.__wrapped__(given)
+    return _known_inputs(given)
 
 
 @lru_cache

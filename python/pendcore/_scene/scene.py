@@ -355,7 +355,7 @@ class Scene:
         from pendcore._scene import linearization
 
         n = len(self.links)
-        driven, names = linearization.known_inputs(linearization.tuple_of_names("inputs", inputs))
+        driven, names = linearization.known_inputs(inputs)
         if torques is not None and any(isinstance(one, str) for one in driven):
             raise ValueError(f"torques: are of joints, and the inputs are {', '.join(names)}")
         found = self._compiled.linearize(t, q, qd, driven, torques)
@@ -426,8 +426,7 @@ class Scene:
         """
         from pendcore._scene import linearization
 
-        named = linearization.tuple_of_names("inputs", inputs)
-        joints, _ = linearization.known_inputs(named)
+        joints, _ = linearization.known_inputs(inputs)
         (time,) = vector("t", t, 1, "s")
         return self._compiled.trim(time, numbers("q", q, "rad", len(self.links)), joints)
 
