@@ -22,7 +22,7 @@ from pendcore import (
 )
 
 GROUPS = {
-    "Scenes": ["Scene", "Link", "Mobility", "Explanation"],
+    "Scenes": ["Scene", "Link", "Linearization", "Mobility", "Explanation"],
     "Runs": ["simulate", "Solution", "Statistics", "RunError", "PendcoreWarning"],
     "Many runs at once": ["ensemble", "Ensemble"],
     "What a run can be trusted for": [
