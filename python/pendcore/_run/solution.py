@@ -711,7 +711,7 @@ class Solution:
         =================  ========================================================================
         ``"angles"``       the absolute angle of each link, deg, over time
         ``"rates"``        the rate of each link, rad/s, over time
-        ``"reactions"``    the force on each link at its joint, N, over time: x, y (downwards), |F|
+        ``"reactions"``    the force on each link at its joint, N, over time: x, y (down), magnitude
         ``"energy"``       kinetic, potential and total energy, J, over time; with ``ledger=True``
                            the work and loss of every effect
         ``"path"``         the path of the tip in the plane, with the chain at the start and the end
