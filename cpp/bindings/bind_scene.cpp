@@ -15,6 +15,7 @@
 #include "pendcore/equations.hpp"
 #include "pendcore/mechanics.hpp"
 #include "simulate/initial_state.hpp"
+#include "text/message.hpp"
 
 namespace pendcore::bindings {
 namespace {
@@ -161,9 +162,10 @@ std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle 
     found = Equations(scene).linearize(time, angles, rates, given);
   } else {
     const std::vector<double> held = numbers("torques", torques, "(k,)", given.size());
+    require_size("torques", held, given.size());
     Scene driven = scene;
     for (std::size_t k = 0; k < given.size(); ++k) {
-      driven.effects.push_back(Motor{.joint = given[k].joint, .constant = held.at(k)});
+      driven.effects.push_back(Motor{.joint = given[k].joint, .constant = held[k]});
     }
     found = Equations(driven).linearize(time, angles, rates, given);
   }

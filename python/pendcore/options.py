@@ -48,7 +48,7 @@ class RunKeywords(TypedDict, total=False):
     ledger: bool
     compensated: bool
     error: float | None
-    sensitivities: Iterable[str]
+    sensitivities: Iterable[str] | None
     on_failure: OnFailure
     progress: Progress
 
@@ -102,7 +102,7 @@ ERROR = RunOption(
 )
 SENSITIVITIES = RunOption(
     "sensitivities",
-    "Iterable[str]",
+    "Iterable[str] | None",
     'Names of what the run depends on: ``"q0[1]"``, ``"qd0[2]"``, or any of '
     "`Scene.parameters`. ``sol.sensitivities`` has the derivatives of the states by them, from the "
     "variational equations along the run. Not with dry friction, stops or locks, nor with "

@@ -13,6 +13,7 @@
 #include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/jacobian.hpp"
 #include "dynamics/joint_forces.hpp"
+#include "integrate/horner.hpp"
 #include "pendcore/effects/lock.hpp"
 #include "pendcore/parameters.hpp"
 #include "scene/effects_of_scene.hpp"
@@ -116,9 +117,9 @@ void require_smooth(const Scene& scene) {
   }
 }
 
-}  // namespace
-
 constexpr int most_halvings_of_step = 44;
+
+}  // namespace
 
 struct Sensitivities::Variation {
   Variation(const Scene& given, const std::vector<std::string>& names)
@@ -157,6 +158,8 @@ struct Sensitivities::Variation {
     Matrix by_name;      ///< (n, k)
   };
 
+  void start(double t, std::span<const double> y);
+  void take(const WatchedStep& step);
   void require_parameter(const std::string& name) const;
   void choose_modes_at(double t, const Vector& y);
   void refuse_from(double t, const std::string& why);
@@ -233,13 +236,9 @@ Sensitivities::Variation::Point Sensitivities::Variation::at(double t, const Vec
 }
 
 Vector Sensitivities::Variation::state(const WatchedStep& step, double theta) const {
-  const std::size_t size = step.y.size();
+  const auto size = static_cast<int>(step.y.size());
   Vector y(2 * n);
-  for (int i = 0; i < 2 * n; ++i) {
-    double sum = 0.0;
-    for (int p = step.degree; p >= 0; --p) sum = theta * sum + step.rows[p * size + i];
-    y[i] = sum;
-  }
+  for (int i = 0; i < 2 * n; ++i) y[i] = horner<double>(step.rows + i, step.degree, size, theta);
   return y;
 }
 
@@ -315,6 +314,46 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
   }
 }
 
+void Sensitivities::Variation::start(double t, std::span<const double> y) {
+  if (has_started) throw std::invalid_argument("sensitivities: have seen a run already");
+  if (y.size() < static_cast<std::size_t>(2 * n)) {
+    throw std::invalid_argument("sensitivities: are for a scene with more links than the run's");
+  }
+  has_started = true;
+  t_start = t;
+  choose_modes_at(t, View(y.data(), 2 * n));
+  const bool is_asked_for = !t_eval.empty() && t_eval.front() == t;
+  if (is_asked_for) ++next_time;
+  if (!keeps_times || is_asked_for) keep_now();
+}
+
+void Sensitivities::Variation::take(const WatchedStep& step) {
+  if (step.share == 0.0) return;  // an event at the start of a step
+  if (refusal.empty()) {
+    const double middle = 0.5 * step.share;
+    const double t = t_start + middle * step.h;
+    try {
+      choose_modes_at(t, state(step, middle));
+    } catch (const std::invalid_argument& error) {
+      refuse_from(t_start, error.what());
+    }
+  }
+  // A time that is kept is the end of a part: there, the order is highest.
+  double from = 0.0;
+  for (; keeps_times && is_due(step); ++next_time) {
+    const double t = t_eval[next_time];
+    const double to = t == step.t ? step.share : (t - t_start) / step.h;
+    if (refusal.empty()) advance(step, from, to, 0);
+    keep_now();
+    from = to;
+  }
+  if (from != step.share && refusal.empty()) advance(step, from, step.share, 0);
+  t_start = step.t;
+  if (keeps_times) return;
+  if (keeps_end) values.clear();
+  keep_now();
+}
+
 Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>& names) {
   require_smooth(scene);
   variation_ = std::make_unique<Variation>(scene, names);
@@ -328,48 +367,8 @@ void Sensitivities::keep(Store store, const std::vector<double>& t_eval) {
   variation_->t_eval = t_eval;
 }
 
-void Sensitivities::starts(double t, std::span<const double> y) {
-  if (variation_->has_started)
-    throw std::invalid_argument("sensitivities: have seen a run already");
-  if (y.size() < states()) {
-    throw std::invalid_argument("sensitivities: are for a scene with more links than the run's");
-  }
-  variation_->has_started = true;
-  variation_->t_start = t;
-  variation_->choose_modes_at(t, View(y.data(), 2 * variation_->n));
-  const bool is_asked_for = !variation_->t_eval.empty() && variation_->t_eval.front() == t;
-  if (is_asked_for) ++variation_->next_time;
-  if (!variation_->keeps_times || is_asked_for) variation_->keep_now();
-}
-
-void Sensitivities::steps(const WatchedStep& step) {
-  if (step.share == 0.0) return;  // an event at the start of a step
-  if (variation_->refusal.empty()) {
-    const double middle = 0.5 * step.share;
-    const double t = variation_->t_start + middle * step.h;
-    try {
-      variation_->choose_modes_at(t, variation_->state(step, middle));
-    } catch (const std::invalid_argument& error) {
-      variation_->refuse_from(variation_->t_start, error.what());
-    }
-  }
-  // A time that is kept is the end of a part: there, the order is highest.
-  double from = 0.0;
-  for (; variation_->keeps_times && variation_->is_due(step); ++variation_->next_time) {
-    const double t = variation_->t_eval[variation_->next_time];
-    const double to = t == step.t ? step.share : (t - variation_->t_start) / step.h;
-    if (variation_->refusal.empty()) variation_->advance(step, from, to, 0);
-    variation_->keep_now();
-    from = to;
-  }
-  if (from != step.share && variation_->refusal.empty())
-    variation_->advance(step, from, step.share, 0);
-  variation_->t_start = step.t;
-  if (variation_->keeps_times) return;
-  if (variation_->keeps_end) variation_->values.clear();
-  variation_->keep_now();
-}
-
+void Sensitivities::starts(double t, std::span<const double> y) { variation_->start(t, y); }
+void Sensitivities::steps(const WatchedStep& step) { variation_->take(step); }
 void Sensitivities::jumps(double /*t*/, std::span<const double> /*y*/) {}
 
 const std::string& Sensitivities::refusal() const { return variation_->refusal; }

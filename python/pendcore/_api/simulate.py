@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.arguments import no_time_span, number
+from pendcore._messages.arguments import listed_names, no_time_span, number
 from pendcore._messages.progress import ProgressBar, callback, close
 from pendcore._messages.warning import warn
 from pendcore._run.call import Start, completed
@@ -126,7 +126,7 @@ def simulate(
     report: Any = ProgressBar() if progress is None else callback(progress)
     watch = None
     if wanted:
-        names = _names_of(wanted)
+        names = listed_names("sensitivities", wanted, "q0[1]")
         watch = _core.Sensitivities(scene._compiled, list(names))
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)
@@ -143,17 +143,6 @@ def simulate(
             close(report)
         return solution
     return checked(completed(solution, report), on_failure)
-
-
-def _names_of(given: object) -> tuple[str, ...]:
-    """Return the names of what a run is to be differentiated by."""
-    wanted = f'sensitivities = {given!r}: must be a list of names, such as ["q0[1]"]'
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise TypeError(wanted)
-    names = tuple(given)
-    if not all(isinstance(name, str) for name in names):
-        raise TypeError(wanted)
-    return names
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:

@@ -69,6 +69,17 @@ def text(name: str, value: object) -> str:
     return value
 
 
+def listed_names(
+    argument: str, given: object, example: str, kind: type[Any] = str
+) -> tuple[Any, ...]:
+    """Return what a list of names, or of another kind, holds; a text alone is none."""
+    if isinstance(given, Iterable) and not isinstance(given, str):
+        names = tuple(given)
+        if all(isinstance(name, kind) for name in names):
+            return names
+    raise TypeError(f'{argument} = {given!r}: must be a list of names, such as ["{example}"]')
+
+
 def positive(name: str, value: object, unit: str) -> float:
     """Return one real number above 0 as a float."""
     given = number(name, value, unit)

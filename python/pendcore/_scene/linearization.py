@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, positive, whole_number
+from pendcore._messages.arguments import Floats, listed_names, positive, whole_number
 
-Name = TypeVar("Name")
 _TORQUE = re.compile(r"torque\[(\d+)\]")
 _OUTPUT = re.compile(r"(q|qd|qdd|phi|phid|x|y|vx|vy)\[(\d+)\]")
 
@@ -134,13 +133,9 @@ class Linearization:
         return control.ss(self.A, self.B, self.C, self.D, **time, **names)
 
 
-def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
-    """Return a list of names as a tuple, in which none stands twice; a name alone is none."""
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise TypeError(
-            f'{argument} = {given!r}: must be a list of names, such as ["q[1]", "q[2]"]'
-        )
-    names = tuple(given)
+def different_names(argument: str, given: object) -> tuple[Any, ...]:
+    """Return what a list of names holds, in which none stands twice."""
+    names = listed_names(argument, given, "qd[1]", object)
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{argument}: {name!r} stands twice")
@@ -149,7 +144,7 @@ def tuple_of_names(argument: str, given: Iterable[Name]) -> tuple[Name, ...]:
 
 def known_inputs(inputs: Iterable[int | str]) -> tuple[tuple[int | str, ...], tuple[str, ...]]:
     """Return inputs as the core takes them, a torque by its joint, and their names."""
-    given = tuple(inputs) if isinstance(inputs, list | tuple) else tuple_of_names("inputs", inputs)
+    given = tuple(inputs) if isinstance(inputs, list | tuple) else different_names("inputs", inputs)
     for one in given:
         if type(one) is not int and type(one) is not str:  # a cache takes True and 1.0 for 1
             return _known_inputs.__wrapped__(given)
@@ -166,7 +161,7 @@ def _known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...],
         else:
             given.append(str(one) if isinstance(one, str) else whole_number("inputs", one))
     names = (one if isinstance(one, str) else f"torque[{one}]" for one in given)
-    return tuple(given), tuple_of_names("inputs", names)
+    return tuple(given), different_names("inputs", names)
 
 
 @lru_cache

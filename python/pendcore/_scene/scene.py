@@ -369,7 +369,7 @@ class Scene:
         system = linearization.Linearization(A, B, C, D, drift, x, x, names, of_state)
         if outputs is None:
             return system
-        wanted = linearization.tuple_of_names("outputs", outputs)
+        wanted = linearization.different_names("outputs", outputs)
         lengths, (angles, rates) = np.array([link.length for link in self.links]), np.split(x, 2)
         places = self.positions(t, angles), self.velocities(t, angles, rates)
         by = [linearization.ends_by_parameter(self.effects, name, t, x) for name in names]

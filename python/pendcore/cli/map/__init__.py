@@ -51,7 +51,7 @@ _OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
 
 
 class _Asked(NamedTuple):
-    """What is asked for; without a reducer, a component of the end state."""
+    """What a map shows. A component of the end state needs no reducer."""
 
     case: Case
     table: MapTable
