@@ -113,6 +113,19 @@ def test_what_kill_leaves_is_finished_to_the_same_bytes(tmp_path):
     assert contents(killed) == contents(whole)
 
 
+def test_what_a_worker_left_when_it_died_is_gone_at_the_end(tmp_path):
+    class WithOneThatDied(ThreadPoolExecutor):
+        def submit(self, *task):
+            (tmp_path / "a.zarr" / "q" / "left.partial").write_text("of a write that kill ended")
+            return super().submit(*task)
+
+    plain, there = tmp_path / "plain.zarr", tmp_path / "a.zarr"
+    make(plain)
+    with WithOneThatDied(1) as pool:
+        make(there, executor=pool)
+    assert contents(there) == contents(plain)
+
+
 SLOW = {
     "scene": pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * 40),
     "q0": np.full((16, 40), 0.3),

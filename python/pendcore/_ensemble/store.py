@@ -104,6 +104,11 @@ class Store:
         self.require_there()
         _write(self.path, self.place, lambda: self.zarr_arrays, block, arrays)
 
+    def remove_unfinished(self) -> None:
+        """Remove the files of blocks that nobody finished: a worker died while it wrote them."""
+        for left in self.place.rglob("*.partial"):
+            left.unlink(missing_ok=True)
+
     def require_there(self) -> None:
         """Raise an OSError if the folder that was opened is no longer under its name."""
         if not is_there(self.place) or not os.path.samestat(self.place.stat(), self.folder):
@@ -112,6 +117,7 @@ class Store:
     def require_all(self) -> None:
         """Raise an OSError if files are missing, now that every block was written."""
         self.require_there()
+        self.remove_unfinished()
         lost_members, first_file = self.not_done()
         if lost_members:
             raise OSError(
@@ -295,8 +301,7 @@ def continued(path: Path, members: Members, request: Request) -> Store:
             f"store = {str(path)!r}: has other starts, parameters or times: results are never "
             "mixed; choose another name, or remove it"
         )
-    for left in path.rglob("*.partial"):  # of a block that was not finished
-        left.unlink(missing_ok=True)
+    store.remove_unfinished()
     return store
 
 
