@@ -178,11 +178,11 @@ known-page:
 	$(call require_one_of,write,PAGE,$(PAGES))
 
 # Random attacks, by the thousand.
-CAMPAIGNS := fuzz readers errors mutants
+CAMPAIGNS := fuzz readers errors mutants derivatives
 NEEDED_BY_readers := fuzz
 NEEDED_BY_errors := error
 NEEDED_BY_mutants := mutant
-campaign: known-campaign $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(OF)),test)-requirements  ## random attacks: OF=fuzz|readers|errors|mutants
+campaign: known-campaign $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(OF)),test)-requirements  ## random attacks: OF=fuzz|readers|errors|mutants|derivatives
 	$(CAMPAIGN_$(OF))
 
 known-campaign:
@@ -213,6 +213,11 @@ define CAMPAIGN_errors
 PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--family %) \
     --workers $(ERROR_WORKERS) --output out/true_error/scenes.json \
     --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
+endef
+
+# Derivatives through impacts, stick and release, against complex numbers; SEEDS=0:300 unless told.
+define CAMPAIGN_derivatives
+PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds $(if $(filter file,$(origin SEEDS)),0:300,$(SEEDS))
 endef
 
 # Which small mistakes the tests notice; hours, goes on where it stopped.

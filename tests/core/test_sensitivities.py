@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import pickle
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +18,13 @@ import pytest
 from described_scenes import scene_of
 from numpy.typing import NDArray
 from reference.arithmetic import COMPLEX
+from reference.complex_runs import LITTLE, midpoint_rule
 from reference.effects import Described, law
 from reference.newton_euler import Body
 from reference.rig import Rig
 
 E = pc.effects
 TEXTBOOK = pc.Scene.textbook()
-LITTLE = 1e-30j
 BODIES = [Body(1.0, 0.9, 0.4, 0.09), Body(0.7, 1.1, 0.6, 0.08), Body(0.4, 0.5, 0.2, 0.01)]
 ACTING: list[Described] = [
     ("viscous_joint", {"joint": 2, "damping": 0.1, "damping3": 0.02}),
@@ -35,21 +34,6 @@ ACTING: list[Described] = [
     ("rotor_inertia", {"joint": 2, "armature": 0.05}),
     ("driven_pivot", {"y": {"amplitude": 0.05, "angular_frequency": 5.0}}),
 ]
-
-
-def midpoint_rule(f: Callable[..., Any], t: float, y: Any, h: float) -> Any:
-    """One step of Gragg's rule, extrapolated to order 16."""
-    rows: list[Any] = []
-    for j in range(1, 9):
-        substeps = 2 * j
-        step, before, here = h / substeps, y, y + h / substeps * f(t, y)
-        for k in range(1, substeps):
-            before, here = here, before + 2 * step * f(t + k * step, here)
-        row = [(before + here + step * f(t + h, here)) / 2]
-        for k, earlier in enumerate(rows[-1] if rows else [], 1):
-            row.append(row[-1] + (row[-1] - earlier) / ((j / (j - k)) ** 2 - 1))
-        rows.append(row)
-    return rows[-1][-1]
 
 
 def exact(
@@ -280,14 +264,14 @@ def test_a_damaged_file_is_refused(tmp_path: Path, entry: str, value: Any) -> No
 
 
 REFUSED = {
-    "a joint that sticks": (E.DryJointFriction(joint=1, coulomb=1.0), ["q0[1]"], "effect 1 .dry_"),
-    "a stop": (E.JointStop(joint=1, range=(-1, 1)), ["q0[1]"], r"effect 1 \(joint_stop\)"),
-    "a lock": (E.Lock(joint=1), ["q0[1]"], r"effect 1 \(lock\)"),
     "no such link": (E.Payload(mass=1.0), ["q0[3]"], r"q0\[3\].*must be q0\[1\] to q0\[2\]"),
     "no number": (E.Payload(mass=1.0), ["qd0[x]"], r"must be qd0\[1\] to qd0\[2\]"),
     "a state": (E.Payload(mass=1.0), ["q[1]"], r"a start is named q0\[i\] or qd0\[i\]"),
     "a corner": (
         E.Motor(joint=1, constant=2.0, limit=2.0), ["effect[1].constant"], "has a corner",
+    ),
+    "the angle of a lock": (
+        E.Lock(joint=2, angle=0.2), ["effect[1].angle"], r"a run starts at the angle of effect 1",
     ),
     "no parameter": (E.Payload(mass=1.0), ["lnk[1].mass"], r'did you mean "link\[1\]\.mass"'),
 }  # fmt: skip

@@ -1,19 +1,12 @@
 /// \file
 /// How a run changes with its start and with parameters of its scene: the variational equations
-/// along the run, step by step.
-///
-///     d(dq)/dt  = dqd
-///     d(dqd)/dt = (d qdd/d q) dq + (d qdd/d qd) dqd + d qdd/d p
+/// (variational_equations.hpp) along the run, step by step.
 ///
 /// They are linear, so each step of the run is a linear system: d(dqd)/dt is the polynomial that
-/// holds at the s points of a Gauss quadrature, along the run's own dense output. Its order at the
-/// end of a step is 2 s. A step in which the polynomial has not converged is halved, again and
-/// again at a kink; where it never converges, there are no derivatives from there on (NaN). The
-/// derivatives of qdd are those of linearize(): exact to rounding.
-///
-/// The laws of a scene may have modes, in time or with the state, as long as the accelerations are
-/// continuous where they meet, or the time is given. A scene that sticks or bounces is refused: a
-/// change of the state jumps there.
+/// holds at the points of a Gauss quadrature (gauss_collocation.hpp), along the run's own dense
+/// output. A step in which the polynomial has not converged is halved, again and again at a kink;
+/// where it never converges, there are no derivatives from there on (NaN). Where laws change, the
+/// changes go on by their saltation (saltation.hpp), or are refused.
 ///
 /// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), I.14, II.7.
 /// Cost: for each step, s Jacobians, O(n^3 s^3), and for each parameter s inverse dynamics on dual
@@ -34,8 +27,7 @@ namespace pendcore {
 /// run may keep anything.
 class Sensitivities final : public KeepingWatch {
  public:
-  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, or a parameter (parameters.hpp). Throws
-  /// std::invalid_argument for another name, and for a scene that sticks, bounces or is locked.
+  /// Names are those of VariationalEquations, which throws std::invalid_argument for others.
   Sensitivities(const Scene& scene, const std::vector<std::string>& names);
   ~Sensitivities() override;
   Sensitivities(Sensitivities&&) noexcept;
@@ -44,7 +36,8 @@ class Sensitivities final : public KeepingWatch {
   bool asks_for_dense_output() const override { return true; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;
-  void jumps(double t, std::span<const double> y) override;
+  void jumps(double /*t*/, std::span<const double> /*y*/) override {}
+  void changes(const WatchedChange& change) override;
 
   /// d(q, qd)/d(name), (n_t, 2n, k) row-major.
   const std::vector<double>& values() const;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "arithmetic/epsilon.hpp"
+#include "arithmetic/extrapolated_slope.hpp"
 #include "arithmetic/sine_cosine.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
@@ -74,37 +74,6 @@ bool has_other_pieces(const Scene& changed, const std::vector<int>& modes, doubl
     if (has_table && changed.effects[i]->mode_at(t, 0.0, 0.0, true) != modes[i]) return true;
   }
   return false;
-}
-
-/// The slope of a function of one number, from its values at steps h, h/2, h/4 and h/8 to either
-/// side, and `here`: central differences, extrapolated as Richardson does. Nothing where a
-/// corner lies among the values, or at the value itself: one-sided slopes then differ by as much at
-/// half the step, and central differences do not settle. `size` is that of the numbers from which
-/// the function is rounded.
-constexpr int steps_of_slope = 4;
-std::optional<double> slope_of(double here, const std::array<double, steps_of_slope>& ahead,
-                               const std::array<double, steps_of_slope>& behind, double h,
-                               double size) {
-  std::array<double, steps_of_slope> slope, gap;
-  for (int k = 0; k < steps_of_slope; ++k, h *= 0.5) {
-    slope[k] = (ahead[k] - behind[k]) / (2.0 * h);
-    gap[k] = std::abs((ahead[k] - here) - (here - behind[k])) / h;
-  }
-  const double rounding = 64.0 * epsilon * std::max(std::abs(here), size) / h;
-  double weight = 4.0;
-  double without_largest_step = 0.0;
-  for (int level = 1; level < steps_of_slope; ++level, weight *= 4.0) {
-    without_largest_step = slope.back();
-    for (int k = steps_of_slope - 1; k >= level; --k) {
-      slope[k] += (slope[k] - slope[k - 1]) / (weight - 1.0);
-    }
-  }
-  // For a smooth function that changes by as much as itself, these differ by 2^-36 of it.
-  const double difference = std::abs(slope.back() - without_largest_step);
-  const bool settles = difference <= 0x1p-33 * std::abs(slope.back()) + rounding;
-  const bool is_smooth = gap[3] <= 0.7 * gap[2] + rounding;
-  if (!settles || !is_smooth) return std::nullopt;
-  return slope.back();
 }
 
 }  // namespace
@@ -179,9 +148,9 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
       if (ahead[k].empty() || behind[k].empty()) return false;
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const auto slope =
-          slope_of(*numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
-                   {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
+      const auto slope = extrapolated_slope(
+          *numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
+          {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
       if (!slope) return false;
       slopes[i] = *slope;
     }

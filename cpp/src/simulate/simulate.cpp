@@ -53,7 +53,7 @@ class SceneRun {
       throw std::invalid_argument("the dense output of this solution is not that of its method");
     }
     if (!equations_.held_joints) return;
-    switching_.emplace(scene, equations_, solution.accounts);
+    switching_.emplace(scene, equations_, solution.accounts, options_.watch);
     if (!stopped_is_caught) return;
     // Deciding which joints are held is not a step, and takes long in a long chain.
     RunLimits& clock = clock_.emplace(limits_, state_.t.high);

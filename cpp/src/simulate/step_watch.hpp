@@ -9,6 +9,9 @@
 
 namespace pendcore {
 
+struct EquationsOfMotion;
+struct JointGuard;
+
 /// An accepted step. Of a step in which an event ends the run, only the part before counts.
 struct WatchedStep {
   double t;                   ///< s, at its end
@@ -20,6 +23,16 @@ struct WatchedStep {
   double share;  ///< of the step: theta at its end, 1 unless an event ends it
 };
 
+/// The laws with which a run starts, or those that follow others at the end of a step.
+struct WatchedChange {
+  double t;                               ///< s
+  std::span<const double> before, after;  ///< the states
+  bool jumped;                            ///< whether they differ by more than rounding
+  bool at_start;
+  const JointGuard* guard;             ///< whose zero it is; null for a time that is given
+  const EquationsOfMotion& equations;  ///< with the modes and the holds from now on
+};
+
 class StepWatch {
  public:
   virtual ~StepWatch() = default;
@@ -28,6 +41,8 @@ class StepWatch {
   virtual void steps(const WatchedStep& step) = 0;
   /// The state became y at once: at an impact, or at the start.
   virtual void jumps(double t, std::span<const double> y) = 0;
+  /// Called before jumps(), where laws may change along the run.
+  virtual void changes(const WatchedChange& /*change*/) {}
 };
 
 /// A watch that keeps something where the run keeps its states.

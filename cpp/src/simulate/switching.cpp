@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -66,9 +67,10 @@ bool has_strong_damper_beyond(int joint, const double* qd, const HeldJoints& joi
 }  // namespace
 
 Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
-                     const std::vector<Account>& accounts)
+                     const std::vector<Account>& accounts, StepWatch* watch)
     : scene_(scene),
       equations_(equations),
+      watch_(watch),
       n_(static_cast<int>(scene.links.size())),
       joints_(*equations_.held_joints),
       modes_(equations),
@@ -77,6 +79,8 @@ Switching::Switching(const Scene& scene, const EquationsOfMotion& equations,
       qdd_(n_) {}
 
 bool Switching::begin(double t, double* y, bool forward) {
+  std::vector<double> before;
+  if (watch_ != nullptr) before.assign(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
   modes_.set_direction(forward);
   modes_.choose_laws(t, y);
   for (const Lock& lock : effects_of<Lock>(scene_)) {
@@ -90,6 +94,15 @@ bool Switching::begin(double t, double* y, bool forward) {
     modes_.choose_sides(t, y);
   }
   collect_guards(y);
+  if (watch_ != nullptr) {
+    watch_->changes({.t = t,
+                     .before = before,
+                     .after = {y, before.size()},
+                     .jumped = strikes,
+                     .at_start = true,
+                     .guard = nullptr,
+                     .equations = equations_});
+  }
   return strikes;
 }
 
@@ -154,6 +167,21 @@ bool Switching::settle(int k, double* y) const {
 }
 
 bool Switching::cross(int k, double t, double* y) {
+  if (watch_ == nullptr) return change(k, t, y);
+  const std::vector<double> before(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
+  const std::optional<JointGuard> guard = k < 0 ? std::nullopt : std::optional(guards_[k]);
+  const bool jumped = change(k, t, y);
+  watch_->changes({.t = t,
+                   .before = before,
+                   .after = {y, before.size()},
+                   .jumped = jumped,
+                   .at_start = false,
+                   .guard = guard ? &*guard : nullptr,
+                   .equations = equations_});
+  return jumped;
+}
+
+bool Switching::change(int k, double t, double* y) {
   modes_.begin_change(t);
   bool jumped = false;
   if (k < 0) {

@@ -20,15 +20,16 @@
 #include "simulate/impacts.hpp"
 #include "simulate/joint_guards.hpp"
 #include "simulate/modes.hpp"
+#include "simulate/step_watch.hpp"
 
 namespace pendcore {
 
 class Switching final : public Discontinuities {
  public:
   /// `accounts` are the accounts of the ledger, which the state has after angles and rates if the
-  /// ledger is kept. The scene must outlive this object.
+  /// ledger is kept. The scene must outlive this object, and so must the watch, which may be null.
   Switching(const Scene& scene, const EquationsOfMotion& equations,
-            const std::vector<Account>& accounts);
+            const std::vector<Account>& accounts, StepWatch* watch);
   Switching(const Switching&) = delete;  // the impacts refer to the modes
   Switching& operator=(const Switching&) = delete;
 
@@ -67,10 +68,12 @@ class Switching final : public Discontinuities {
  private:
   bool reach_stop(int k, double t, double* y);
   void come_to_rest(int k, double t, double* y);
+  bool change(int k, double t, double* y);
   void collect_guards(const double* y);
 
   const Scene& scene_;
   EquationsOfMotion equations_;
+  StepWatch* watch_;
   int n_;
   HeldJoints& joints_;
   Modes modes_;

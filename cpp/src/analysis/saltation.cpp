@@ -1,0 +1,265 @@
+#include "analysis/saltation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/extrapolated_slope.hpp"
+#include "dynamics/kinematics.hpp"
+#include "pendcore/parameters.hpp"
+#include "scene/effects_of_scene.hpp"
+
+namespace pendcore {
+namespace {
+
+/// A change by as little as this would miss an event: of an angle in rad, and of other things as a
+/// share of their size.
+constexpr double near_miss = 1e-7;
+
+using Kind = JointGuard::Kind;
+
+/// The change of a joint's angle or rate with each name, (k): `rows` are those of q or of qd.
+Vector relative_rows(const Matrix& changes, Eigen::Index first, int joint) {
+  Vector row = changes.row(first + joint).transpose();
+  if (joint > 0) row -= changes.row(first + joint - 1).transpose();
+  return row;
+}
+
+/// The torque that holds a joint in a scene, with the modes and the holds of a run.
+double holding_torque(const Scene& scene, const EquationsOfMotion& run, double t, const Vector& y,
+                      int joint) {
+  const EquationsOfMotion here = equations_of_motion(scene);
+  for (std::size_t i = 0; i < run.effects->modes.size(); ++i) {
+    here.effects->put_mode(i, run.effects->modes[i]);
+  }
+  here.held_joints->restore(*here.effects, run.held_joints->saved_state(), false);
+  const std::size_t n = scene.links.size();
+  std::vector<double> torques(n);
+  here.held_joints->torques(here, t, y.data(), y.data() + n, torques.data());
+  return torques[joint];
+}
+
+}  // namespace
+
+Saltation::Saltation(VariationalEquations& equations)
+    : equations_(equations),
+      n_(equations.links()),
+      k_(static_cast<Eigen::Index>(equations.names().size())),
+      impact_(equations) {}
+
+std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
+  equations_.take_laws(change.t, change.equations);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const auto refuse_all = [&](const std::string& why) {
+    changes.setConstant(none);
+    return "sensitivities: none: " + why;
+  };
+  if (change.jumped) return refuse_all("the run starts with an impact");
+  if (const std::string why = border(change); !why.empty()) return refuse_all(why);
+  const HeldJoints& joints = *equations_.equations().held_joints;
+  std::string told;
+  for (int j = 0; j < n_; ++j) {
+    const Side side = joints.contact(j, change.after.data());
+    const bool is_locked = joints.supports()[j].is_locked;
+    if (!joints.is_held(j) && side == Side::none) continue;
+    Vector angles = relative_rows(changes, 0, j);
+    const Vector rates = relative_rows(changes, n_, j);
+    if (side != Side::none && !is_locked) {
+      for (const auto& one : equations_.parameters()) {
+        angles[one.column] -= one.supports[j].stop(side).angle;
+      }
+    }
+    for (Eigen::Index column = 0; column < k_; ++column) {
+      const bool turns = joints.is_held(j) && rates[column] != 0.0;
+      const bool leaves = side != Side::none && !is_locked && angles[column] != 0.0;
+      if (!turns && !leaves) continue;
+      changes.col(column).setConstant(none);
+      told.append(told.empty() ? "sensitivities: none of \"" : ", \"")
+          .append(equations_.names()[static_cast<std::size_t>(column)])
+          .append("\": " + joint_name(j))
+          .append(is_locked            ? " is locked, and this would turn it"
+                  : side != Side::none ? " is at its stop, and moves from there to one side only"
+                                       : " is held by friction, and slides otherwise to either "
+                                         "side");
+    }
+  }
+  return told;
+}
+
+std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
+  const Vector before = View(change.before.data(), 2 * n_);
+  const Vector f = equations_.rates(change.t, change.before.data());
+  Vector f_after(2 * n_);
+  f_after.head(n_) = View(change.after.data() + n_, n_);
+  accelerations_in_force(change.equations, change.t, change.after.data(), change.after.data() + n_,
+                         f_after.data() + n_);
+  const double size = std::max(largest(f), largest(f_after));
+  const bool is_continuous =
+      !change.jumped && largest(f_after - f) <= rounding_of_rates * std::max(size, 1e-300);
+  if (is_continuous) {
+    equations_.take_laws(change.t, change.equations);
+    return {};
+  }
+  const double moment =
+      64.0 * epsilon *
+      std::max(std::abs(change.t), 1.0 / equations_.equations().held_joints->natural_speed());
+  const bool is_again = std::abs(change.t - last_) <= moment;
+  last_ = change.t;
+  if (change.guard == nullptr) {
+    if (is_again && !was_given_) return "two of its laws change at that time";
+    was_given_ = true;
+    equations_.take_laws(change.t, change.equations);
+    return border(change);
+  }
+  const JointGuard guard = *change.guard;
+  if (is_again) {
+    // A load that jumped at a given time may release a joint there; anything else is two at once.
+    if (!was_given_ || guard.is_linear()) return "two of its laws change at that time";
+    equations_.take_laws(change.t, change.equations);
+    return border(change);
+  }
+  was_given_ = false;
+
+  const std::optional<Crossing> found = crossing(change, f, changes);
+  if (!found) return joint_name(guard.joint) + " reaches a law that jumps";
+  const bool is_stop = guard.stop() != Side::none;
+  if (found->grazes) {
+    return joint_name(guard.joint) +
+           (is_stop ? " grazes its stop" : " comes to where its law changes, and hardly beyond");
+  }
+
+  const Vector shift = found->by_name / -found->slope;
+  Matrix after = changes + f * shift.transpose();
+  if (change.jumped) {
+    if (std::string why = impact_.strike(change, after); !why.empty()) return why;
+  }
+  changes = after - f_after * shift.transpose();
+  equations_.take_laws(change.t, change.equations);
+  settle(changes);
+  return border(change);
+}
+
+/// A joint that is held does not turn, to the last bit.
+void Saltation::settle(Matrix& changes) const {
+  const HeldJoints& joints = *equations_.equations().held_joints;
+  for (int j = 0; j < n_; ++j) {
+    if (!joints.is_held(j)) continue;
+    if (j > 0) {
+      changes.row(n_ + j) = changes.row(n_ + j - 1);
+    } else {
+      changes.row(n_).setZero();
+    }
+  }
+}
+
+std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& change, const Vector& f,
+                                                       const Matrix& changes) {
+  const JointGuard& guard = *change.guard;
+  if (!guard.is_linear()) return crossing_of_torque(change, f, changes);
+  if (guard.kind == Kind::law) return std::nullopt;
+  const int j = guard.joint;
+  const auto& [offset, on_phi, on_phid] = guard.linear;
+  const double rate = relative(f.data(), j + 1);
+  const double acceleration = relative(f.data() + n_, j + 1);
+  Crossing found{
+      .by_name = on_phi * relative_rows(changes, 0, j) + on_phid * relative_rows(changes, n_, j),
+      .slope = on_phi * rate + on_phid * acceleration,
+      .grazes = std::abs(acceleration) <= near_miss * largest(f.tail(n_))};
+  if (guard.stop() == Side::none) return found;
+  // Without its stop, the joint would turn back after this angle.
+  const double beyond = 0.5 * rate * rate / (on_phi * acceleration);
+  found.grazes = rate == 0.0 || (beyond > 0.0 && beyond < near_miss);
+  for (const auto& one : equations_.parameters()) {
+    found.by_name[one.column] -= on_phi * one.supports[j].stop(guard.stop()).angle;
+  }
+  return found;
+}
+
+/// The torque that holds a joint, by extrapolated differences: rare, and of few digits anyway.
+std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedChange& change,
+                                                                 const Vector& f,
+                                                                 const Matrix& changes) {
+  const int j = change.guard->joint;
+  const double sign = change.guard->kind == Kind::most_torque ? -1.0 : 1.0;
+  const Scene& scene = equations_.scene();
+  const EquationsOfMotion& run = equations_.equations();
+  const Vector y = View(change.before.data(), 2 * n_);
+  const auto torque = [&](double t, const Vector& at) {
+    return holding_torque(scene, run, t, at, j);
+  };
+  const double here = torque(change.t, y);
+  const double size = run.held_joints->torque_size(j);
+  const double speed = run.held_joints->natural_speed();
+
+  // The steps are small beside a radian, and beside what the chain turns by in the meantime.
+  const auto step_along = [&](const Vector& direction) {
+    return 0x1p-4 / std::max(largest(direction.head(n_)), largest(direction.tail(n_)) / speed);
+  };
+  Crossing found{.by_name = Vector::Zero(k_), .slope = 0.0, .grazes = false};
+  const double moment = std::min(step_along(f), 0x1p-4 / speed);
+  const auto in_time = extrapolated_slope(
+      here, [&](double h) { return torque(change.t + h, y + h * f); }, moment, size);
+  if (!in_time) return std::nullopt;
+  found.slope = sign * *in_time;
+  found.grazes = std::abs(found.slope) <= near_miss * size * speed;
+  for (Eigen::Index column = 0; column < k_; ++column) {
+    const Vector direction = changes.col(column);
+    if (largest(direction) == 0.0) continue;
+    const auto slope = extrapolated_slope(
+        here, [&](double h) { return torque(change.t, y + h * direction); }, step_along(direction),
+        size);
+    if (!slope) return std::nullopt;
+    found.by_name[column] = sign * *slope;
+  }
+  const std::vector<NamedNumber> all = parameters(scene);
+  for (const auto& parameter : equations_.parameters()) {
+    const ParameterChoice choice(scene, {parameter.name});
+    const double value = std::ranges::find(all, parameter.name, &NamedNumber::name)->value;
+    const auto changed = [&](double h) {
+      Scene there = scene;
+      choice.set(there, std::vector{value + h});
+      return holding_torque(there, run, change.t, y, j);
+    };
+    const double step = value == 0.0 ? 0x1p-4 : std::ldexp(1.0, std::ilogb(value) - 5);
+    const auto slope = extrapolated_slope(here, changed, step, size);
+    if (!slope) return std::nullopt;
+    found.by_name[parameter.column] += sign * *slope + parameter.supports[j].friction;
+  }
+  return found;
+}
+
+/// Whether rounding has decided that a joint is held, or let go.
+std::string Saltation::border(const WatchedChange& change) {
+  HeldJoints& joints = *equations_.equations().held_joints;
+  if (!joints.can_hold()) return {};
+  const double* const q = change.after.data();
+  const double* const qd = q + n_;
+  std::vector<double> torques(n_);
+  if (joints.any_held_for_now()) {
+    joints.torques(equations_.equations(), change.t, q, qd, torques.data());
+  }
+  const Vector f = equations_.rates(change.t, q);
+  const double size = largest(f.tail(n_));
+  for (int j = 0; j < n_; ++j) {
+    const JointSupport& support = joints.supports()[j];
+    if (support.is_locked) continue;
+    const Hold& hold = joints.holds()[j];
+    if (joints.is_held(j)) {
+      const double room = std::min(torques[j] - hold.least, hold.most - torques[j]);
+      if (room > rounding_of_rates * joints.torque_size(j)) continue;
+    } else {
+      const bool may_be_held =
+          !support.friction_effects.empty() || joints.contact(j, q) != Side::none;
+      if (!may_be_held || relative(qd, j + 1) != 0.0) continue;
+      const bool is_released =
+          change.guard != nullptr && change.guard->joint == j && !change.guard->is_linear();
+      if (is_released) continue;
+      if (std::abs(relative(f.data() + n_, j + 1)) > rounding_of_rates * size) continue;
+    }
+    return "the torques on " + joint_name(j) + " only just hold it, or only just do not";
+  }
+  return {};
+}
+
+}  // namespace pendcore

@@ -1,0 +1,67 @@
+/// \file
+/// How small changes of a state go on where the laws of a run change: their saltation.
+///
+/// At time t*, where a guard g is zero, the rates f- = (qd, qdd) of one law end, the state jumps to
+/// R(y), and those of the next law, f+, begin. Changes dy move that time by dt*:
+///
+///     dt* = -(g_y dy + g_p) / g',   g' = g_y f- + g_t
+///     dy+ = R_y (dy + f- dt*) + R_p - f+ dt*
+///
+/// The guard is the rate of a joint with dry friction, the angle between a joint and its stop, or
+/// the torque that holds a joint within its range. R is the law of impact (impact_on_changes.hpp).
+///
+/// Where f+ = f- and R(y) = y, dy goes on as it is: laws whose pieces meet, and a release at which
+/// sliding takes the torque that held. At a time that is given, dt* = 0.
+///
+/// A motion has no such derivative where it grazes a stop, where two of these fall together, and
+/// where a joint is held or let go by rounding. There, this refuses in words.
+///
+/// Sources: Aizerman, Gantmacher, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958)
+/// 459; Kong, Payne, Zhu, Johnson, Proceedings of the IEEE 112 (2024) 585.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/impact_on_changes.hpp"
+#include "analysis/variational_equations.hpp"
+#include "simulate/joint_guards.hpp"
+#include "simulate/step_watch.hpp"
+
+namespace pendcore {
+
+class Saltation {
+ public:
+  explicit Saltation(VariationalEquations& equations);
+
+  /// Takes the laws with which a run starts. Columns of changes (2n, k) that have no derivative
+  /// become NaN. Returns why, or nothing.
+  std::string start(const WatchedChange& change, Matrix& changes);
+  /// Takes the laws after a change, and brings the changes there. Returns why there are none, or
+  /// nothing.
+  std::string pass(const WatchedChange& change, Matrix& changes);
+
+ private:
+  /// The change of g with each name, (k), and its slope in time.
+  struct Crossing {
+    Vector by_name;
+    double slope;
+    bool grazes;  ///< a slightly different motion would not come there
+  };
+  std::optional<Crossing> crossing(const WatchedChange& change, const Vector& f,
+                                   const Matrix& changes);
+  std::optional<Crossing> crossing_of_torque(const WatchedChange& change, const Vector& f,
+                                             const Matrix& changes);
+  std::string border(const WatchedChange& change);
+  void settle(Matrix& changes) const;
+
+  VariationalEquations& equations_;
+  int n_;
+  Eigen::Index k_;
+  ImpactOnChanges impact_;
+  double last_ = never;     ///< s, when the laws last changed with a jump of rates or state
+  bool was_given_ = false;  ///< at a time that no state moves
+};
+
+}  // namespace pendcore

@@ -1,0 +1,150 @@
+#include "analysis/variational_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "effects/behaviour.hpp"
+#include "pendcore/effects/lock.hpp"
+#include "pendcore/parameters.hpp"
+#include "scene/effects_of_scene.hpp"
+
+namespace pendcore {
+namespace {
+
+/// The number of the link of q0 or qd0 that a name means, from 0, or -1.
+int link_of_start(const std::string& name, const std::string& kind, int n) {
+  if (!name.starts_with(kind)) return -1;
+  for (int i = 0; i < n; ++i) {
+    if (name == kind + "[" + std::to_string(i + 1) + "]") return i;
+  }
+  throw std::invalid_argument("sensitivities: \"" + name + "\": must be " + kind + "[1] to " +
+                              kind + "[" + std::to_string(n) + "]");
+}
+
+void require_parameter(const Scene& scene, const std::string& name) {
+  if (name.starts_with("q[") || name.starts_with("qd[")) {
+    throw std::invalid_argument("sensitivities: \"" + name +
+                                "\": a start is named q0[i] or qd0[i]");
+  }
+  const ParameterChoice known(scene, {name});  // throws for a name that is none
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!scene.effects[i].is<Lock>() || name != "effect[" + std::to_string(i + 1) + "].angle") {
+      continue;
+    }
+    throw std::invalid_argument("sensitivities: \"" + name + "\": a run starts at the angle of " +
+                                effect_name(scene, i) +
+                                ": leave the angle out, and name the start, q0[i]");
+  }
+}
+
+/// (1 / 2h) (ahead - behind), which is exact up to rounding: supports are linear in parameters.
+std::vector<JointSupport> slopes_of(const Scene& scene, const std::string& name) {
+  const std::vector<NamedNumber> all = parameters(scene);
+  const double value = std::ranges::find(all, name, &NamedNumber::name)->value;
+  const double h = value == 0.0 ? 1.0 : std::ldexp(1.0, std::ilogb(value) - 8);
+  const ParameterChoice choice(scene, {name});
+  const auto at = [&](double x) {
+    Scene changed = scene;
+    choice.set(changed, std::vector{x});
+    return joint_supports(changed, Inertia(changed));
+  };
+  std::vector<JointSupport> slopes = at(value + h);
+  const std::vector<JointSupport> behind = at(value - h);
+  const auto take = [h](double& ahead, double before) {
+    ahead = std::isfinite(ahead - before) ? (ahead - before) / (2.0 * h) : 0.0;
+  };
+  for (std::size_t j = 0; j < slopes.size(); ++j) {
+    take(slopes[j].friction, behind[j].friction);
+    for (Stop JointSupport::* const stop : {&JointSupport::lower, &JointSupport::upper}) {
+      take((slopes[j].*stop).angle, (behind[j].*stop).angle);
+      take((slopes[j].*stop).restitution, (behind[j].*stop).restitution);
+    }
+  }
+  return slopes;
+}
+
+}  // namespace
+
+VariationalEquations::VariationalEquations(const Scene& scene,
+                                           const std::vector<std::string>& names)
+    : scene_(scene),
+      names_(names),
+      n_(static_cast<int>(scene.links.size())),
+      equations_(equations_of_motion(scene)),
+      jacobian_(scene, equations_) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string& name = names[k];
+    if (link_of_start(name, "q0", n_) >= 0 || link_of_start(name, "qd0", n_) >= 0) continue;
+    require_parameter(scene, name);
+    names_of_parameters_.push_back(name);
+    parameters_.push_back(
+        {.column = static_cast<Eigen::Index>(k), .name = name, .supports = slopes_of(scene, name)});
+  }
+}
+
+Matrix VariationalEquations::changes_of_start() const {
+  Matrix changes = Matrix::Zero(2 * n_, static_cast<Eigen::Index>(names_.size()));
+  for (Eigen::Index k = 0; k < changes.cols(); ++k) {
+    const std::string& name = names_[static_cast<std::size_t>(k)];
+    const int angle = link_of_start(name, "q0", n_);
+    const int rate = link_of_start(name, "qd0", n_);
+    if (angle >= 0) changes(angle, k) = 1.0;
+    if (rate >= 0) changes(n_ + rate, k) = 1.0;
+  }
+  return changes;
+}
+
+void VariationalEquations::choose_laws(double t, const double* y) {
+  if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
+  modes_ = modes_at(scene_, t, y, y + n_);
+  put_along(t);
+}
+
+void VariationalEquations::take_laws(double t, const EquationsOfMotion& run) {
+  modes_ = run.effects->modes;
+  for (std::size_t i = 0; i < modes_.size(); ++i) equations_.effects->put_mode(i, modes_[i]);
+  equations_.held_joints->restore(*equations_.effects, run.held_joints->saved_state(),
+                                  run.held_joints->has_failed());
+  put_along(t);
+}
+
+/// Makes what depends on modes and holds.
+void VariationalEquations::put_along(double t) {
+  std::vector<bool> held(n_);
+  for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
+  forces_.emplace(scene_, held);
+  for (int j = 0; j < n_; ++j) {
+    if (!held[j]) forces_->joints.push_back(j);
+  }
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    parameters_[i].mechanism = mechanism_along(scene_, modes_, t, names_of_parameters_, i);
+  }
+}
+
+VariationalEquations::Point VariationalEquations::at(double t, const Vector& y) {
+  Point point{.by_q = Matrix(n_, n_),
+              .by_qd = Matrix(n_, n_),
+              .by_name = Matrix::Zero(n_, static_cast<Eigen::Index>(names_.size()))};
+  jacobian_(t, y.data(), y.data() + n_, point.by_q, point.by_qd);
+  if (parameters_.empty()) return point;
+  Vector qdd(n_);
+  accelerations_in_force(equations_, t, y.data(), y.data() + n_, qdd.data());
+  forces_->set_mass_matrix(y.data());
+  forces_->set_up();
+  const Numbers q(y.head(n_)), qd(y.segment(n_, n_));
+  for (const Parameter& one : parameters_) {
+    point.by_name.col(one.column) =
+        inverse_dynamics_.change(one.mechanism, t, q, qd, qdd, *forces_);
+  }
+  return point;
+}
+
+Vector VariationalEquations::rates(double t, const double* y) const {
+  Vector f(2 * n_);
+  f.head(n_) = View(y + n_, n_);
+  accelerations_in_force(equations_, t, y, y + n_, f.data() + n_);
+  return f;
+}
+
+}  // namespace pendcore

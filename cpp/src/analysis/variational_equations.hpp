@@ -1,0 +1,79 @@
+/// \file
+/// The variational equations of a scene: how a small change of a state, of the start or of
+/// parameters p goes on.
+///
+///     d(dq)/dt  = dqd
+///     d(dqd)/dt = (d qdd/d q) dq + (d qdd/d qd) dqd + d qdd/d p
+///
+/// The derivatives of qdd are those of linearize(): exact to rounding, in the laws that the run has
+/// at the time.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamics/contact/held_joints.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/inverse_dynamics.hpp"
+#include "dynamics/jacobian.hpp"
+#include "dynamics/joint_forces.hpp"
+#include "pendcore/scene.hpp"
+
+namespace pendcore {
+
+class VariationalEquations {
+ public:
+  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, or a parameter (parameters.hpp). Throws
+  /// std::invalid_argument for another name.
+  VariationalEquations(const Scene& scene, const std::vector<std::string>& names);
+  VariationalEquations(const VariationalEquations&) = delete;  // the Jacobian refers to the modes
+  VariationalEquations& operator=(const VariationalEquations&) = delete;
+
+  /// A name that is a parameter, the column of its change, and the scene's numbers along it.
+  struct Parameter {
+    Eigen::Index column;
+    std::string name;
+    std::vector<JointSupport> supports;  ///< the slopes of friction, angles and restitution
+    Mechanism<Dual<double>> mechanism = {};
+  };
+
+  int links() const { return n_; }
+  const Scene& scene() const { return scene_; }
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<Parameter>& parameters() const { return parameters_; }
+  /// With the laws that are in force.
+  const EquationsOfMotion& equations() const { return equations_; }
+
+  /// The change of a state with each name at the start, (2n, k).
+  Matrix changes_of_start() const;
+
+  /// Takes the laws that a state calls for, of a scene whose laws stay.
+  void choose_laws(double t, const double* y);
+  /// Takes the laws of a run: its modes, and the joints that it holds.
+  void take_laws(double t, const EquationsOfMotion& run);
+
+  /// What the equations are at a state.
+  struct Point {
+    Matrix by_q, by_qd;  ///< (n, n)
+    Matrix by_name;      ///< (n, k)
+  };
+  Point at(double t, const Vector& y);
+  Vector rates(double t, const double* y) const;  ///< (qd, qdd)
+
+ private:
+  void put_along(double t);
+
+  Scene scene_;
+  std::vector<std::string> names_;
+  int n_;
+  EquationsOfMotion equations_;
+  Jacobian jacobian_;
+  std::vector<Parameter> parameters_;
+  std::vector<std::string> names_of_parameters_;
+  std::vector<int> modes_;
+  std::optional<JointForces> forces_;  ///< on the joints that turn
+  InverseDynamics<Dual<double>> inverse_dynamics_;
+};
+
+}  // namespace pendcore

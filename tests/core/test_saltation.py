@@ -1,0 +1,206 @@
+"""Derivatives through impacts, stick and release: exact answers, complex numbers, and refusals."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from derivatives.campaign import ALLOWED, judged
+from described_scenes import scene_of
+from reference.newton_euler import Body
+
+E = pc.effects
+ROD = pc.Link(mass=1.0, length=1.0)
+WEIGHTLESS = pc.Scene(links=[ROD], gravity=0.0)
+INERTIA = 1 / 3
+TEXTBOOK = pc.Scene.textbook()
+EXACTLY: Any = {"rtol": 1e-13, "atol": 1e-16}
+
+
+def derivatives(scene: pc.Scene, t: float, q0: Any, qd0: Any, names: list[str]) -> Any:
+    sol = pc.simulate(scene, (0, t), q0, qd0, store="end", sensitivities=names, **EXACTLY)
+    assert sol.sensitivities is not None
+    return sol.sensitivities[-1]
+
+
+# Exact answers ----------------------------------------------------------------------------------
+
+
+def test_a_bounce_at_a_constant_rate() -> None:
+    """After t* = (s - q0)/w, phi = s - e w (t - t*)."""
+    q0, w, s, e, t = 0.2, 3.0, 0.8, 0.6, 0.5
+    scene = WEIGHTLESS.replace(effects=[E.JointStop(joint=1, range=(-9, s), restitution=e)])
+    names = ["q0[1]", "qd0[1]", "effect[1].range.upper", "effect[1].restitution"]
+    t_hit = (s - q0) / w
+    angle = [-e, -e * t, 1 + e, -w * (t - t_hit)]
+    rate = [0, -e, 0, -w]
+    found = derivatives(scene, t, q0, w, names)
+    np.testing.assert_allclose(found, [angle, rate], rtol=0, atol=1e-12)
+
+
+def test_a_rod_that_slides_to_rest() -> None:
+    """It stops after w I / t_c, at q0 + I w^2 / (2 t_c)."""
+    w, friction = 3.0, 0.7
+    scene = WEIGHTLESS.replace(effects=[E.DryJointFriction(joint=1, coulomb=friction)])
+    names = ["q0[1]", "qd0[1]", "effect[1].coulomb", "link[1].inertia"]
+    heavy = scene.replace(links=[pc.Link(mass=1.0, length=1.0, center=0.5, inertia=1 / 12)])
+    angle = [1, INERTIA * w / friction, -INERTIA * w**2 / (2 * friction**2), w**2 / (2 * friction)]
+    found = derivatives(heavy, 3.0, 0.1, w, names)
+    np.testing.assert_allclose(found, [angle, [0] * 4], rtol=0, atol=1e-12)
+
+
+def test_a_motor_that_sets_a_joint_free_from_its_static_friction() -> None:
+    """At A sin(omega t*) = t_s; far beyond the Stribeck velocity, t_c is left of the friction.
+
+    Just after t*, the rate that the peak of friction takes depends on nothing but the peak.
+    """
+    A, omega, sliding, static, t = 2.0, 0.9, 0.5, 0.9, 1.6
+    motor = E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=A, angular_frequency=omega))
+
+    def end(amplitude: float, **more: Any) -> Any:
+        driven = motor.replace(sinusoid=motor.sinusoid.replace(amplitude=amplitude))
+        dry = E.DryJointFriction(joint=1, coulomb=sliding, static=static, stribeck_velocity=0.2)
+        scene = WEIGHTLESS.replace(effects=[dry, driven])
+        return pc.simulate(scene, (0, t), 0.0, 0.0, store="end", **EXACTLY, **more)
+
+    found = end(A, sensitivities=["effect[2].sinusoid.amplitude"]).sensitivities[-1, :, 0]
+    by = 1e-3  # Richardson's extrapolation of differences of the run, whose steps all move
+    differences = [(end(A + h).y - end(A - h).y)[:, -1] / (2 * h) for h in (by, by / 2, by / 4)]
+    first = [(4 * b - a) / 3 for a, b in pairwise(differences)]
+    np.testing.assert_allclose(found, (16 * first[1] - first[0]) / 15, rtol=1e-9)
+    t_free = math.asin(static / A) / omega
+    assert 0 < t_free < t
+
+
+def test_a_lock_makes_one_link_of_two() -> None:
+    """d(q, qd)/d(q0) of two rods with a lock between them is that of a rod twice as long."""
+    locked = TEXTBOOK.replace(effects=[E.Lock(joint=2)])
+    single = pc.Scene(links=[pc.Link(mass=2.0, length=2.0)])
+    names = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]", "gravity"]
+    one = derivatives(single, 1.2, 0.4, 1.0, ["q0[1]", "qd0[1]", "gravity"])
+    with pytest.warns(pc.PendcoreWarning, match=r'none of "qd0\[1\]": joint 2 is locked'):
+        two = derivatives(locked, 1.2, [0.4, 0.4], [1.0, 1.0], names)
+    assert np.isnan(two[:, 2:4]).all()
+    for link in (0, 1):
+        rows = two[[link, 2 + link]]
+        np.testing.assert_allclose(rows[:, 0] + rows[:, 1], one[:, 0], rtol=0, atol=1e-11)
+        np.testing.assert_allclose(rows[:, 4], one[:, 2], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.6, 0.85])
+def test_bounces_without_end(restitution: float) -> None:
+    """Forty of them come to rest in a moment; whether all are taken or the last few left out."""
+    ends = []
+    for capture in (1e-5, None):
+        stop = E.JointStop(joint=2, range=(-2, 1), restitution=restitution, capture_speed=capture)
+        spring = E.TorsionalSpring(joint=2, stiffness=30.0, rest_angle=2.0)
+        scene = TEXTBOOK.replace(effects=[stop, spring])
+        names = ["q0[1]", "gravity", "effect[1].restitution", "effect[1].range.upper"]
+        ends.append(derivatives(scene, 1.2, [1.2, 1.7], [-1.5, 3.0], names))
+    np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-11)
+
+
+# Random runs ------------------------------------------------------------------------------------
+
+
+@pytest.mark.few_cases
+@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55])
+def test_random_runs_have_the_derivatives_of_complex_numbers(seed: int) -> None:
+    verdict = judged(seed)
+    assert verdict.kind == "right", verdict
+    assert verdict.events > 0
+    assert verdict.error <= ALLOWED
+
+
+def test_back_in_time() -> None:
+    """A plain bounce is undone by the run backwards, and so is its transition matrix."""
+    stop = E.JointStop(joint=2, range=(-0.5, 0.8), restitution=1.0)
+    scene = TEXTBOOK.replace(effects=[stop])
+    names = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]"]
+    there = pc.simulate(scene, (0, 1), [0.3, 0.5], [0.0, 1.0], sensitivities=names, **EXACTLY)
+    back = pc.simulate(scene, (1, 0), there.q[-1], there.qd[-1], sensitivities=names, **EXACTLY)
+    assert there.sensitivities is not None
+    assert back.sensitivities is not None
+    product = back.sensitivities[-1] @ there.sensitivities[-1]
+    np.testing.assert_allclose(product, np.eye(4), rtol=0, atol=1e-8)
+
+
+# Where they are kept ----------------------------------------------------------------------------
+
+
+def test_before_and_after_a_jump_both_are_kept() -> None:
+    stop = E.JointStop(joint=1, range=(-9, 0.8), restitution=0.6)
+    scene = WEIGHTLESS.replace(effects=[stop])
+    t_hit = (0.8 - 0.2) / 3.0
+
+    def run(**options: Any) -> pc.Solution:
+        return pc.simulate(scene, (0, 0.5), 0.2, 3.0, sensitivities=["q0[1]", "qd0[1]"], **options)
+
+    for sol in (run(), run(store="steps")):
+        assert sol.sensitivities is not None
+        assert len(sol.sensitivities) == len(sol.t)
+        at = int(np.flatnonzero(np.diff(sol.t) == 0)[0])
+        np.testing.assert_allclose(sol.sensitivities[at, 0, 0], 1, atol=1e-12)
+        np.testing.assert_allclose(sol.sensitivities[at + 1, 0, 0], -0.6, atol=1e-12)
+    hit = float(run().t[at])
+    assert hit == pytest.approx(t_hit)
+    sol = run(t_eval=[0.1, hit, 0.4])
+    assert sol.sensitivities is not None
+    assert sol.sensitivities.shape == (3, 2, 2)
+    np.testing.assert_allclose(sol.sensitivities[:, 0, 0], [1, -0.6, -0.6], atol=1e-12)
+
+
+# Refused ----------------------------------------------------------------------------------------
+
+BOUNCE = E.JointStop(joint=1, range=(-9, 0.8), restitution=0.6)
+IN_TWO = scene_of(
+    [Body(1.0, 1.0, 0.5, 1 / 12), Body(1.0, 1.0, 0.0, 0.1)],
+    0.0,
+    [("joint_stop", {"joint": joint, "range": (-9.0, 0.5)}) for joint in (1, 2)],
+)
+"""Neither link moves the other: the second one turns about its mass centre."""
+REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, list[str], str]] = {
+    "a graze": (
+        pc.Scene(links=[ROD]).replace(effects=[E.JointStop(joint=1, range=(-9, np.pi - 1e-9))]),
+        3.0, 0.0, 0.0, ["q0[1]"], "joint 1 grazes its stop",
+    ),
+    "two stops at once": (
+        IN_TWO, 1.0, [0.0, 0.0], [1.0, 2.0], ["q0[1]"],
+        "at once|two of its laws change at that time",
+    ),
+    "a start with an impact": (
+        WEIGHTLESS.replace(effects=[BOUNCE]), 1.0, 0.8, 1.0, ["q0[1]"],
+        "none: the run starts with an impact",
+    ),
+    "a start at a stop": (
+        WEIGHTLESS.replace(effects=[BOUNCE]), 1.0, 0.8, -1.0, ["q0[1]"],
+        r'none of "q0\[1\]": joint 1 is at its stop, and moves from there to one side only',
+    ),
+    "a start that friction holds": (
+        WEIGHTLESS.replace(effects=[E.DryJointFriction(joint=1, coulomb=1.0)]), 1.0, 0.8, 0.0,
+        ["qd0[1]"], r'none of "qd0\[1\]": joint 1 is held by friction, and slides otherwise',
+    ),
+    "friction just at its limit": (
+        pc.Scene(links=[ROD]).replace(effects=[E.DryJointFriction(joint=1, coulomb=9.807 / 2)]),
+        1.0, 0.0, 0.0, ["q0[1]"], "the torques on joint 1 only just hold it",
+    ),
+    "a restitution that is zero": (
+        WEIGHTLESS.replace(effects=[E.JointStop(joint=1, range=(-9, 0.8))]), 1.0, 0.2, 3.0,
+        ["effect[1].restitution"], "the restitution of joint 1 is 0, and can only grow",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_has_no_derivative_is_refused_by_name(name: str) -> None:
+    scene, t, q0, qd0, names, told = REFUSED[name]
+    with pytest.warns(pc.PendcoreWarning, match=told):
+        sol = pc.simulate(scene, (0, t), q0, qd0, sensitivities=names)
+    assert sol.success
+    assert sol.sensitivities is not None
+    assert len(sol.sensitivities) == len(sol.t)
+    assert np.isnan(sol.sensitivities[-1]).all()

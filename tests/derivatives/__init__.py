@@ -1,0 +1,1 @@
+"""Random runs whose derivatives are held against a reference."""

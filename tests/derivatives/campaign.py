@@ -1,0 +1,67 @@
+"""`make campaign OF=derivatives`: sensitivities through impacts, stick and release, by the hundred.
+
+    PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds 0:300
+    PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds 51:52    # that one
+
+A run whose derivative is wrong is listed, and so is one whose end is not that of the reference: the
+exit status is then 1. A run may be refused; it says why.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import NamedTuple
+
+import numpy as np
+from tqdm import tqdm
+
+from derivatives.hybrid_runs import by_complex_numbers, by_pendcore, drawn
+
+ALLOWED = 1e-8
+"""Of the largest entry of the derivative; and of the state, that both are of the same motion."""
+
+
+class Verdict(NamedTuple):
+    """What one run came to: its error as a share of the largest entry, and what was said of it."""
+
+    seed: int
+    events: int
+    error: float
+    kind: str  # "right", "refused", "wrong" or "another motion"
+    told: str
+
+
+def judged(seed: int) -> Verdict:
+    """Hold a run against the reference."""
+    case = drawn(seed)
+    end, found, why = by_pendcore(case)
+    if why:
+        return Verdict(seed, 0, np.nan, "refused", why)
+    right_end, right, events = by_complex_numbers(case)
+    error = float(np.abs(found - right).max() / max(1.0, np.abs(right).max()))
+    is_same = np.abs(end - right_end).max() <= ALLOWED * max(1.0, np.abs(right_end).max())
+    kind = "another motion" if not is_same else "right" if error <= ALLOWED else "wrong"
+    return Verdict(seed, len(events), error, kind, " ".join(events))
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a campaign."""
+    parser = argparse.ArgumentParser(prog="derivatives.campaign")
+    parser.add_argument("--seeds", default="0:300", metavar="FIRST:END")
+    first, end = map(int, parser.parse_args(arguments).seeds.split(":"))
+    verdicts = [judged(seed) for seed in tqdm(range(first, end), disable=None)]
+    for one in verdicts:
+        if one.kind != "right":
+            print(f"seed {one.seed}: {one.kind} ({one.error:.1e}): {one.told}")
+    right = [one for one in verdicts if one.kind == "right"]
+    print(
+        f"{len(right)} of {len(verdicts)} right, with {sum(one.events for one in right)} events; "
+        f"the worst is {max((one.error for one in right), default=0.0):.1e} off, "
+        f"the median {np.median([one.error for one in right] or [0.0]):.1e}"
+    )
+    return 1 if any(one.kind in {"wrong", "another motion"} for one in verdicts) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,156 @@
+"""Random runs with impacts, stick and release, and the derivatives of their ends."""
+
+from __future__ import annotations
+
+import random
+import re
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+from described_scenes import scene_of
+from numpy.typing import NDArray
+from reference.arithmetic import COMPLEX
+from reference.complex_runs import LITTLE, Friction, HybridRun, Range
+from reference.effects import Described, law
+from reference.newton_euler import Body
+from reference.rig import Rig
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HybridCase:
+    """A scene, a start, and by how much each name is changed."""
+
+    bodies: list[Body]
+    gravity: float
+    described: list[Described]
+    q0: list[float]
+    qd0: list[float]
+    t_end: float
+    changes: dict[str, float]
+    """A derivative is taken along all of them at once: one wrong entry spoils the sum."""
+
+    @property
+    def scene(self) -> pc.Scene:
+        return scene_of(self.bodies, self.gravity, self.described)
+
+
+def drawn(seed: int) -> HybridCase:
+    """Draw a case of one to three links, whose joints have dry friction or stops."""
+    some = random.Random(seed)
+    n = some.choice([1, 2, 2, 2, 3])
+
+    def between(low: float, high: float) -> float:
+        return round(some.uniform(low, high), 4)
+
+    bodies = []
+    for _ in range(n):
+        mass, length = between(0.3, 2.0), between(0.4, 1.2)
+        center = round(length * between(0.3, 0.7), 4)
+        bodies.append(Body(mass, length, center, round(mass * length**2 * between(0.05, 0.1), 5)))
+    q0 = [between(-2.5, 2.5) for _ in range(n)]
+    qd0 = [between(-4.0, 4.0) for _ in range(n)]
+    described: list[Described] = []
+    for j in range(n):
+        phi = q0[j] - (q0[j - 1] if j else 0.0)
+        kind = some.choice(["friction", "friction", "stop", "stop", "none"])
+        if kind == "friction":
+            told: dict[str, Any] = {"joint": j + 1, "coulomb": between(0.1, 3.0)}
+            if some.random() < 0.5:
+                told |= {
+                    "static": round(told["coulomb"] * between(1.05, 1.8), 4),
+                    "stribeck_velocity": between(0.3, 1.0),
+                    "exponent": some.choice([1.0, 2.0]),
+                }
+            described.append(("dry_joint_friction", told))
+        elif kind == "stop":
+            ends = (round(phi - between(0.05, 1.5), 4), round(phi + between(0.05, 1.5), 4))
+            told = {"joint": j + 1, "range": ends, "capture_speed": between(0.01, 0.3)}
+            told["restitution"] = some.choice([0.0, between(0.1, 0.95), between(0.1, 0.95)])
+            described.append(("joint_stop", told))
+    joint = some.randint(1, n)
+    smooth: list[Described] = [
+        ("viscous_joint", {"joint": joint, "damping": between(0.0, 0.5)}),
+        ("torsional_spring", {"joint": joint, "stiffness": between(0.0, 9.0)}),
+        ("motor", {"joint": joint, "sinusoid": {"amplitude": between(0.5, 6.0),
+                                                "angular_frequency": between(1.0, 9.0)}}),
+        ("payload", {"mass": between(0.1, 1.0)}),
+        ("rotor_inertia", {"joint": joint, "armature": between(0.01, 0.3)}),
+        ("driven_pivot", {"y": {"amplitude": between(0.01, 0.1), "angular_frequency": 7.0}}),
+    ]  # fmt: skip
+    described += some.sample(smooth, some.randint(0, 3))
+    scene = scene_of(bodies, 9.807, described)
+    starts = [f"{what}[{i}]" for what in ("q0", "qd0") for i in range(1, n + 1)]
+    unknown = re.compile(r"capture_speed|exponent")
+    named = [
+        name
+        for name, value in scene.parameters().items()
+        if not unknown.search(name) and np.isfinite(value) and value != 0
+    ]
+    names = [*some.sample(starts, min(2, len(starts))), *some.sample(named, min(5, len(named)))]
+    changes = {name: some.choice([-1.0, 1.0]) * between(0.3, 1.0) for name in names}
+    return HybridCase(bodies=bodies, gravity=9.807, described=described, q0=q0, qd0=qd0,
+                      t_end=between(0.5, 2.0), changes=changes)  # fmt: skip
+
+
+def by_complex_numbers(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
+    """Return the state at the end, its derivative along all changes, and the events."""
+    n = len(case.bodies)
+    bodies: list[Any] = [list(body) for body in case.bodies]
+    described: Any = [
+        (kind, {k: dict(v) if isinstance(v, dict) else v for k, v in told.items()})
+        for kind, told in case.described
+    ]
+    for _, told in described:
+        if "range" in told:
+            told["range"] = dict(zip(("lower", "upper"), told["range"], strict=True))
+        if "coulomb" in told:
+            told.setdefault("static", None)
+    gravity: Any = case.gravity
+    y: Any = np.array([*case.q0, *case.qd0], dtype=complex)
+    for name, change in case.changes.items():
+        by = change * LITTLE
+        if name == "gravity":
+            gravity += by
+        elif start := re.fullmatch(r"(q0|qd0)\[(\d)\]", name):
+            y[int(start[2]) - 1 + n * (start[1] == "qd0")] += by
+        elif link := re.fullmatch(r"link\[(\d)\]\.(\w+)", name):
+            bodies[int(link[1]) - 1][Body._fields.index(link[2])] += by
+        else:
+            i, path = re.findall(r"effect\[(\d)\]\.(.+)", name)[0]
+            *parts, last = path.split(".")
+            owner: Any = described[int(i) - 1][1]
+            for part in parts:
+                owner = owner[part]
+            owner[last] = (owner.get(last) or 0.0) + by
+    friction, stops, smooth = {}, {}, []
+    for kind, told in described:
+        if kind not in {"dry_joint_friction", "joint_stop"}:
+            smooth.append(law((kind, told)))
+            continue
+        joint = told.pop("joint") - 1
+        if kind == "joint_stop":
+            stops[joint] = Range(**told.pop("range"), **told)
+        else:
+            told["static"] = told["coulomb"] if told["static"] is None else told["static"]
+            friction[joint] = Friction(**told)
+    rig = Rig(bodies=[Body(*body) for body in bodies], gravity=gravity, effects=smooth,
+              arithmetic=COMPLEX)  # fmt: skip
+    run = HybridRun(rig=rig, friction=friction, stops=stops)
+    end = run.end(y, case.t_end)
+    return end.real, end.imag / LITTLE.imag, run.events
+
+
+def by_pendcore(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], str]:
+    """Return the same of a run with sensitivities, and why there is none, if there is none."""
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", pc.PendcoreWarning)
+        sol = pc.simulate(
+            case.scene, (0, case.t_end), case.q0, case.qd0, rtol=1e-13, atol=1e-15, store="end",
+            sensitivities=list(case.changes),
+        )  # fmt: skip
+    assert sol.sensitivities is not None
+    why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))
+    return sol.y[:, -1], sol.sensitivities[-1] @ [*case.changes.values()], why
