@@ -1,6 +1,5 @@
 #include "analysis/gauss_collocation.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "arithmetic/sine_cosine.hpp"
@@ -56,13 +55,13 @@ GaussCollocation::Integrals GaussCollocation::integrals(double at) const {
   return {to_legendre.transpose() * once.head(s), to_legendre.transpose() * twice};
 }
 
-const GaussCollocation& collocation_for(int degree) {
+const GaussCollocation& gauss_collocation(int points) {
   static const std::vector<GaussCollocation> all = [] {
     std::vector<GaussCollocation> made;
-    for (int s = 4; s <= 16; ++s) made.emplace_back(s);
+    for (int s = least_points; s <= most_points; ++s) made.emplace_back(s);
     return made;
   }();
-  return all[std::clamp((degree + 5) / 2, 4, 16) - 4];
+  return all[points - least_points];
 }
 
 }  // namespace pendcore

@@ -29,7 +29,10 @@ struct GaussCollocation {
   Integrals to_end;
 };
 
-/// The one that suits a dense output of a degree.
-const GaussCollocation& collocation_for(int degree);
+inline constexpr int least_points = 4;
+inline constexpr int most_points = 16;
+
+/// The one with so many points.
+const GaussCollocation& gauss_collocation(int points);
 
 }  // namespace pendcore

@@ -37,12 +37,18 @@ Matrix ImpactOnChanges::torques_of_changed_mass(const Numbers& q, const Vector& 
   Matrix torques = on_links;
   for (int j = n_ - 1; j-- > 0;) torques.row(j) += torques.row(j + 1);
   const Vector rest = Vector::Zero(n_);
-  for (const auto& parameter : equations_.parameters()) {
-    Mechanism<Dual<double>> of_mass = parameter.mechanism;
-    of_mass.effects.clear();
-    of_mass.gravity = {};
-    of_mass_.compute(of_mass, 0.0, q, rest, x);
-    for (int j = 0; j < n_; ++j) torques(j, parameter.column) -= of_mass_.torques()[j].slope;
+  for (std::size_t p = 0; p < equations_.parameters().size(); ++p) {
+    const std::size_t lane_of_it = p % parameters_at_once;
+    if (lane_of_it == 0) {
+      Mechanism<AlongParameters> of_mass = equations_.mechanisms()[p / parameters_at_once];
+      of_mass.effects.clear();
+      of_mass.gravity = {};
+      of_mass_.compute(of_mass, 0.0, q, rest, x);
+    }
+    for (int j = 0; j < n_; ++j) {
+      torques(j, equations_.parameters()[p].column) -=
+          lane(of_mass_.torques()[j].slope, static_cast<int>(lane_of_it));
+    }
   }
   return torques;
 }

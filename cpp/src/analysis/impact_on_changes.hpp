@@ -37,7 +37,7 @@ class ImpactOnChanges {
   int n_;
   Eigen::Index k_;
   JointForces forces_;  ///< on the joints that no lock holds
-  InverseDynamics<Dual<double>> of_mass_;
+  InverseDynamics<AlongParameters> of_mass_;
 };
 
 }  // namespace pendcore

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <Eigen/LU>
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/gauss_collocation.hpp"
+#include "analysis/collocation_kernels.hpp"
 #include "analysis/saltation.hpp"
+#include "arithmetic/instruction_set.hpp"
 #include "integrate/horner.hpp"
 #include "text/message.hpp"
 
@@ -26,9 +26,9 @@ struct Sensitivities::Variation {
   void take(const WatchedStep& step);
   void change_laws(const WatchedChange& change);
   void refuse_from(double t, const std::string& why);
-  bool has_converged(const GaussCollocation& points, const Matrix& found, double h) const;
+  bool has_converged(double h);
   void advance(const WatchedStep& step, double from, double to, int halvings);
-  Vector state(const WatchedStep& step, double theta) const;
+  int padded_names() const { return static_cast<int>((now.cols() + 3) / 4 * 4); }
   /// Whether the next time that is kept lies in a step.
   bool is_due(const WatchedStep& step) const {
     return next_time < t_eval.size() && (t_eval[next_time] - step.t) * step.h <= 0.0;
@@ -41,6 +41,12 @@ struct Sensitivities::Variation {
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
   double t_start = 0.0;
+
+  // Of the part of a step that is under way.
+  int points_at_once = 8;
+  bool has_points_to_spare = false;
+  std::vector<double> thetas{}, states{}, decay{};
+  Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
   bool has_started = false;
   bool keeps_end = true;
@@ -66,36 +72,24 @@ void Sensitivities::Variation::refuse_from(double t, const std::string& why) {
   now.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
-Vector Sensitivities::Variation::state(const WatchedStep& step, double theta) const {
-  const auto size = static_cast<int>(step.y.size());
-  Vector y(2 * n);
-  for (int i = 0; i < 2 * n; ++i) y[i] = horner<double>(step.rows + i, step.degree, size, theta);
-  return y;
-}
-
-/// Whether d(dqd)/dt, with these values at the points, is a polynomial: by the last two of
-/// Legendre's coefficients, for each name alone. Where they fall like a geometric series, the error
-/// at the end of the step is of the order of their square. At a kink they do not.
-bool Sensitivities::Variation::has_converged(const GaussCollocation& points, const Matrix& found,
-                                             double h) const {
+/// Whether d(dqd)/dt is a polynomial: by the last two of Legendre's coefficients, for each name
+/// alone. Where they fall like a geometric series, the error at the end of the step is of the order
+/// of their square. At a kink they do not. Notes whether fewer points would have done.
+bool Sensitivities::Variation::has_converged(double h) {
   constexpr double rounding = 1e-14;
   constexpr double square_root_of_rounding = 3e-7;
-  const int s = points.s;
-  const auto coefficient = [&](int p) {
-    Matrix sum = Matrix::Zero(n, now.cols());
-    for (int j = 0; j < s; ++j) sum += points.to_legendre(p, j) * found.middleRows(j * n, n);
-    return Vector(sum.cwiseAbs().colwise().maxCoeff().transpose());
-  };
-  const Vector last = coefficient(s - 1).cwiseMax(coefficient(s - 2));
-  const Vector middle = coefficient(s / 2).cwiseMax(coefficient(s / 2 - 1));
-  for (Eigen::Index column = 0; column < now.cols(); ++column) {
-    if (!now.col(column).allFinite()) continue;
-    if (!found.col(column).allFinite()) return false;
-    const double largest = found.col(column).cwiseAbs().maxCoeff();
-    const double size = now.col(column).cwiseAbs().maxCoeff() + std::abs(h) * largest;
-    const bool falls = last[column] * largest <= 100.0 * middle[column] * middle[column];
-    const double allowed = falls ? square_root_of_rounding : rounding;
-    if (std::abs(h) * last[column] > allowed * size) return false;
+  constexpr double fewer = 1e-3;  // a point less leaves larger last coefficients
+  has_points_to_spare = true;
+  const int width = padded_names();
+  for (int k = 0; k < now.cols(); ++k) {
+    if (!now.col(k).allFinite()) continue;
+    const double largest = decay[k], last = decay[width + k], middle = decay[2 * width + k];
+    if (!std::isfinite(largest)) return false;
+    const double size = now.col(k).cwiseAbs().maxCoeff() + std::abs(h) * largest;
+    const bool falls = last * largest <= 100.0 * middle * middle;
+    const double allowed = (falls ? square_root_of_rounding : rounding) * size;
+    if (std::abs(h) * last > allowed) return false;
+    has_points_to_spare &= falls && std::abs(h) * last <= fewer * allowed;
   }
   return true;
 }
@@ -103,32 +97,53 @@ bool Sensitivities::Variation::has_converged(const GaussCollocation& points, con
 /// Advances through the part of a step between two shares of it.
 void Sensitivities::Variation::advance(const WatchedStep& step, double from, double to,
                                        int halvings) {
-  const GaussCollocation& points = collocation_for(step.degree);
+  const GaussCollocation& points = gauss_collocation(points_at_once);
   const int s = points.s;
   const double h = (to - from) * step.h;
-  Matrix system = Matrix::Identity(n * s, n * s);
-  Matrix right(n * s, now.cols());
-  const Matrix angles = now.topRows(n), rates = now.bottomRows(n);
-  for (int i = 0; i < s; ++i) {
-    const double theta = from + points.theta[i] * (to - from);
-    const VariationalEquations::Point here =
-        equations.at(t_start + theta * step.h, state(step, theta));
-    const GaussCollocation::Integrals& integrals = points.to_point[i];
-    for (int j = 0; j < s; ++j) {
-      const double by_angle = h * h * integrals.twice[j];
-      const double by_rate = h * integrals.once[j];
-      for (int r = 0; r < n; ++r) {
-        for (int c = 0; c < n; ++c) {
-          system(i * n + r, j * n + c) -= by_angle * here.by_q(r, c) + by_rate * here.by_qd(r, c);
-        }
-      }
-    }
-    right.middleRows(i * n, n) =
-        here.by_q * (angles + points.theta[i] * h * rates) + here.by_qd * rates + here.by_name;
-  }
-  const Matrix found = system.partialPivLu().solve(right);  // d(dqd)/dt at the points, (s n, k)
+  const auto size = static_cast<int>(step.y.size());
+  thetas.resize(s);
+  states.resize(static_cast<std::size_t>(s) * size);
+  for (int i = 0; i < s; ++i) thetas[i] = from + points.theta[i] * (to - from);
+  static const auto sample = fastest<&sample_rows>();
+  sample(step.rows, {}, 1.0, thetas.data(), s, states.data(), size, step.degree);
 
-  if (!has_converged(points, found, h)) {
+  const int width = padded_names();
+  const int row = (n * s + 3) / 4 * 4 + width;
+  const auto parameters = static_cast<Eigen::Index>(equations.parameters().size());
+  by_q.resize(s * n, n);
+  by_qd.resize(s * n, n);
+  by_parameters.resize(n, parameters);
+  by_name.setZero(s * n, width);
+  system.resize(n * s, row);
+  decay.resize(3 * static_cast<std::size_t>(width));
+  for (int i = 0; i < s; ++i) {
+    equations.at(t_start + thetas[i] * step.h, &states[static_cast<std::size_t>(i) * size],
+                 by_q.middleRows(i * n, n), by_qd.middleRows(i * n, n), by_parameters);
+    for (Eigen::Index p = 0; p < parameters; ++p) {
+      by_name.block(i * n, equations.parameters()[p].column, n, 1) = by_parameters.col(p);
+    }
+  }
+  padded.setZero(2 * n, width);
+  padded.leftCols(now.cols()) = now;
+  const CollocationStep part{.points = &points,
+                             .n = n,
+                             .width = width,
+                             .row = row,
+                             .h = h,
+                             .by_q = by_q.data(),
+                             .by_qd = by_qd.data(),
+                             .by_name = by_name.data(),
+                             .now = padded.data(),
+                             .system = system.data(),
+                             .decay = decay.data()};
+  static const auto solve = fastest<&solve_step>();
+  solve(&part);  // d(dqd)/dt at the points
+
+  if (!has_converged(h)) {
+    if (points_at_once < most_points) {
+      points_at_once = std::min(points_at_once + 3, most_points);
+      return advance(step, from, to, halvings);
+    }
     const double middle = 0.5 * (from + to);
     if (halvings == most_halvings_of_step || middle == from || middle == to) {
       refuse_from(t_start + from * step.h,
@@ -139,12 +154,10 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
     if (!is_over) advance(step, middle, to, halvings + 1);
     return;
   }
-  now.topRows(n) += h * rates;
-  for (int j = 0; j < s; ++j) {
-    const auto at_point = found.middleRows(j * n, n);
-    now.topRows(n) += h * h * points.to_end.twice[j] * at_point;
-    now.bottomRows(n) += h * points.to_end.once[j] * at_point;
-  }
+  if (has_points_to_spare && points_at_once > least_points) --points_at_once;
+  static const auto end = fastest<&end_step>();
+  end(&part);
+  now = padded.leftCols(now.cols());
 }
 
 void Sensitivities::Variation::start(double t, std::span<const double> y) {

@@ -117,27 +117,19 @@ void VariationalEquations::put_along(double t) {
   for (int j = 0; j < n_; ++j) {
     if (!held[j]) forces_->joints.push_back(j);
   }
-  for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    parameters_[i].mechanism = mechanism_along(scene_, modes_, t, names_of_parameters_, i);
-  }
+  mechanisms_ = mechanisms_along(scene_, modes_, t, names_of_parameters_);
 }
 
-VariationalEquations::Point VariationalEquations::at(double t, const Vector& y) {
-  Point point{.by_q = Matrix(n_, n_),
-              .by_qd = Matrix(n_, n_),
-              .by_name = Matrix::Zero(n_, static_cast<Eigen::Index>(names_.size()))};
-  jacobian_(t, y.data(), y.data() + n_, point.by_q, point.by_qd);
-  if (parameters_.empty()) return point;
-  Vector qdd(n_);
-  accelerations_in_force(equations_, t, y.data(), y.data() + n_, qdd.data());
-  forces_->set_mass_matrix(y.data());
+void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q,
+                              Eigen::Ref<Matrix> by_qd, Eigen::Ref<Matrix> by_parameters) {
+  const double* const qd = y + n_;
+  jacobian_(t, y, qd, by_q, by_qd);
+  if (parameters_.empty()) return;
+  qdd_.resize(n_);
+  accelerations_in_force(equations_, t, y, qd, qdd_.data());
+  forces_->set_mass_matrix(y);
   forces_->set_up();
-  const Numbers q(y.head(n_)), qd(y.segment(n_, n_));
-  for (const Parameter& one : parameters_) {
-    point.by_name.col(one.column) =
-        inverse_dynamics_.change(one.mechanism, t, q, qd, qdd, *forces_);
-  }
-  return point;
+  by_parameters_.compute(mechanisms_, t, View(y, n_), View(qd, n_), qdd_, *forces_, by_parameters);
 }
 
 Vector VariationalEquations::rates(double t, const double* y) const {

@@ -30,18 +30,19 @@ class VariationalEquations {
   VariationalEquations(const VariationalEquations&) = delete;  // the Jacobian refers to the modes
   VariationalEquations& operator=(const VariationalEquations&) = delete;
 
-  /// A name that is a parameter, the column of its change, and the scene's numbers along it.
+  /// A name that is a parameter.
   struct Parameter {
-    Eigen::Index column;
+    Eigen::Index column;  ///< of its change
     std::string name;
     std::vector<JointSupport> supports;  ///< the slopes of friction, angles and restitution
-    Mechanism<Dual<double>> mechanism = {};
   };
 
   int links() const { return n_; }
   const Scene& scene() const { return scene_; }
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
+  /// The numbers of the scene along them, in the laws that are in force.
+  const std::vector<Mechanism<AlongParameters>>& mechanisms() const { return mechanisms_; }
   /// With the laws that are in force.
   const EquationsOfMotion& equations() const { return equations_; }
 
@@ -53,12 +54,10 @@ class VariationalEquations {
   /// Takes the laws of a run: its modes, and the joints that it holds.
   void take_laws(double t, const EquationsOfMotion& run);
 
-  /// What the equations are at a state.
-  struct Point {
-    Matrix by_q, by_qd;  ///< (n, n)
-    Matrix by_name;      ///< (n, k)
-  };
-  Point at(double t, const Vector& y);
+  /// What the equations are at a state y: by_q and by_qd, (n, n), and by each of the parameters,
+  /// (n, parameters).
+  void at(double t, const double* y, Eigen::Ref<Matrix> by_q, Eigen::Ref<Matrix> by_qd,
+          Eigen::Ref<Matrix> by_parameters);
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
 
  private:
@@ -73,7 +72,9 @@ class VariationalEquations {
   std::vector<std::string> names_of_parameters_;
   std::vector<int> modes_;
   std::optional<JointForces> forces_;  ///< on the joints that turn
-  InverseDynamics<Dual<double>> inverse_dynamics_;
+  std::vector<Mechanism<AlongParameters>> mechanisms_;
+  ChangesOfAccelerations by_parameters_;
+  Vector qdd_;
 };
 
 }  // namespace pendcore

@@ -1,5 +1,6 @@
 /// \file
-/// A dual number: a value, and its derivative along one direction.
+/// A dual number: a value, and its derivative along one direction, or along several, which are the
+/// lanes of a pack.
 ///
 ///     (x + x' e)(y + y' e) = x y + (x y' + x' y) e,   e^2 = 0
 ///
@@ -10,20 +11,24 @@
 /// two to three times the cost of the row. At x = 0, |x| has the derivative that it has for x > 0.
 #pragma once
 
+#include <type_traits>
+
 #include "arithmetic/exponential.hpp"
 #include "arithmetic/row_of_links.hpp"
 
 namespace pendcore {
 
-template <class Row>
+template <class Row, class Along = Row>
 struct Dual {
   Row value;
-  Row slope;
+  // GCC reports the alignment of a pack beside a number as on the baseline, and its clones rely on
+  // the true one.
+  alignas(std::is_same_v<Row, Along> ? alignof(Along) : sizeof(Along)) Along slope;
 
   Dual() = default;
   PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
       : value(constant), slope{} {}
-  PENDCORE_INLINE Dual(const Row& x, const Row& along) : value(x), slope(along) {}
+  PENDCORE_INLINE Dual(const Row& x, const Along& along) : value(x), slope(along) {}
   // GCC would copy the structure in parts of 16 bytes. The load of a wider pack cannot be forwarded
   // from several stores, and waits for them: series took twice as long.
   PENDCORE_INLINE Dual(const Dual& x)
@@ -43,7 +48,7 @@ struct Dual {
     return {x.value - y.value, x.slope - y.slope};
   }
   PENDCORE_INLINE friend Dual operator*(const Dual& x, const Dual& y) {
-    return {x.value * y.value, pendcore::fma(x.value, y.slope, Row(x.slope * y.value))};
+    return {x.value * y.value, pendcore::fma(x.value, y.slope, Along(x.slope * y.value))};
   }
   PENDCORE_INLINE friend Dual operator*(double x, const Dual& y) {
     return {x * y.value, x * y.slope};
@@ -54,7 +59,7 @@ struct Dual {
   }
   PENDCORE_INLINE friend Dual fma(const Dual& a, const Dual& b, const Dual& c) {
     return {pendcore::fma(a.value, b.value, c.value),
-            pendcore::fma(a.value, b.slope, pendcore::fma(a.slope, b.value, c.slope))};
+            pendcore::fma(a.value, b.slope, pendcore::fma(b.value, a.slope, c.slope))};
   }
   PENDCORE_INLINE friend Dual fma(double a, const Dual& b, const Dual& c) {
     return {pendcore::fma(a, b.value, c.value), pendcore::fma(a, b.slope, c.slope)};
@@ -78,8 +83,8 @@ template <class Row>
 struct WithoutSlope {
   using Type = Row;
 };
-template <class Row>
-struct WithoutSlope<Dual<Row>> {
+template <class Row, class Along>
+struct WithoutSlope<Dual<Row, Along>> {
   using Type = Row;
 };
 template <class Row>
@@ -91,16 +96,22 @@ struct Lanes<Dual<Row>> {
   static constexpr int width = Lanes<Row>::width;
   using Number = Dual<double>;
 };
+template <class Along>
+  requires(!std::is_same_v<Along, double>)
+struct Lanes<Dual<double, Along>> {
+  static constexpr int width = 1;
+  using Number = Dual<double, Along>;
+};
 
-template <class Row>
-struct Constants<Dual<Row>> {
+template <class Row, class Along>
+struct Constants<Dual<Row, Along>> {
   template <class Constant>
-  PENDCORE_INLINE static Dual<Row> of(const Constant& x)
+  PENDCORE_INLINE static Dual<Row, Along> of(const Constant& x)
     requires requires { Constants<Row>::of(x); }
   {
-    return Dual<Row>(Constants<Row>::of(x));
+    return Dual<Row, Along>(Constants<Row>::of(x));
   }
-  PENDCORE_INLINE static Dual<Row> of(const Dual<Row>& x) { return x; }
+  PENDCORE_INLINE static Dual<Row, Along> of(const Dual<Row, Along>& x) { return x; }
 };
 
 /// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
@@ -144,32 +155,35 @@ PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x, const Dual<Row>& row_after) 
   return {after(x.value, row_after.value), after(x.slope, row_after.slope)};
 }
 
-template <class Row>
-PENDCORE_INLINE Dual<Row> absolute(const Dual<Row>& x) {
-  return {absolute(x.value), x.value < Row{} ? Row(-x.slope) : x.slope};
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> absolute(const Dual<Row, Along>& x) {
+  return {absolute(x.value), x.value < Row{} ? Along(-x.slope) : x.slope};
 }
-template <class Row>
-PENDCORE_INLINE void sine_cosine(const Dual<Row>& x, Dual<Row>& sine, Dual<Row>& cosine) {
+template <class Row, class Along>
+PENDCORE_INLINE void sine_cosine(const Dual<Row, Along>& x, Dual<Row, Along>& sine,
+                                 Dual<Row, Along>& cosine) {
   Row s, c;
   sine_cosine(x.value, s, c);
   sine = {s, c * x.slope};
   cosine = {c, -(s * x.slope)};
 }
-template <class Row>
-PENDCORE_INLINE Dual<Row> exponential(const Dual<Row>& x) {
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> exponential(const Dual<Row, Along>& x) {
   const Row value = exponential(x.value);
   return {value, value * x.slope};
 }
 /// x^p for x >= 0 and p >= 1.
-template <class Row>
-PENDCORE_INLINE Dual<Row> power(const Dual<Row>& x, double p) {
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> power(const Dual<Row, Along>& x, double p) {
   if (p == 1.0) return x;
   return {power(x.value, p), broadcast<Row>(p) * power(x.value, p - 1.0) * x.slope};
 }
 /// The same where the exponent has a slope, too: (x^p)' = p x^(p-1) x' + p' x^p log x.
-PENDCORE_INLINE Dual<double> power(const Dual<double>& x, const Dual<double>& p) {
-  Dual<double> result = power(x, p.value);
-  if (x.value > 0.0) result.slope += p.slope * result.value * logarithm(x.value);
+template <class Along>
+PENDCORE_INLINE Dual<double, Along> power(const Dual<double, Along>& x,
+                                          const Dual<double, Along>& p) {
+  Dual<double, Along> result = power(x, p.value);
+  if (x.value > 0.0) result.slope += p.slope * (result.value * logarithm(x.value));
   return result;
 }
 

@@ -53,7 +53,7 @@ struct Equations::Compiled {
   InverseDynamics<double> of_motion{};
   std::optional<JointForces> joint_forces{};  ///< for the mass matrix
   std::optional<JointForces> responses{};     ///< of free_joints()
-  InverseDynamics<Dual<double>> inverse_dynamics{};
+  ChangesOfAccelerations by_parameters{};
 };
 
 }  // namespace pendcore

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "arithmetic/extrapolated_slope.hpp"
+#include "arithmetic/instruction_set.hpp"
 #include "arithmetic/sine_cosine.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
@@ -46,8 +47,8 @@ std::vector<Number*> numbers_of(Mechanism<Number>& all) {
 }
 
 /// A mechanism with the same effects, whose numbers are still to be set.
-Mechanism<Dual<double>> with_slopes(const Mechanism<double>& plain) {
-  using Number = Dual<double>;
+Mechanism<AlongParameters> with_slopes(const Mechanism<double>& plain) {
+  using Number = AlongParameters;
   Mechanism<Number> result;
   result.bodies.resize(plain.bodies.size());
   for (const auto& from : plain.effects) {
@@ -76,55 +77,10 @@ bool has_other_pieces(const Scene& changed, const std::vector<int>& modes, doubl
   return false;
 }
 
-}  // namespace
-
-std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
-  std::vector<int> modes;
-  for (const Effect& effect : scene.effects) {
-    const int joint = effect->joint();
-    modes.push_back(effect->mode_at(t, joint > 0 ? relative(q, joint) : 0.0,
-                                    joint > 0 ? relative(qd, joint) : 0.0, true));
-  }
-  return modes;
-}
-
-Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
-  const Inertia inertia(scene);
-  Mechanism<double> result{.gravity = scene.gravity,
-                           .payload_mass = inertia.payload_mass,
-                           .payload_inertia = inertia.payload_inertia};
-  for (std::size_t i = 0; i < scene.links.size(); ++i) {
-    const Link& link = scene.links[i];
-    result.bodies.push_back(
-        {link.mass, link.length, link.center, link.inertia, inertia.links[i].rotor});
-  }
-  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    const EffectBehaviour& effect = *scene.effects[i];
-    auto& acting = result.effects.emplace_back();
-    acting.place = std::max({effect.joint(), effect.link(), 1}) - 1;
-    const Link& link = scene.links[acting.place];
-    acting.law = effect.law(modes[i], {link.mass, link.length, link.center, scene.gravity});
-    if (!acting.law) acting.couple = effect.couple(modes[i]);
-    if (const std::optional<PivotLaw> pivot = effect.pivot_law(modes[i])) {
-      acting.moves_pivot = true;
-      acting.pivot = *pivot;
-    }
-    for (const Sinusoid& wave : effect.waves()) {
-      acting.waves.push_back({wave.angular_frequency, wave.phase});
-    }
-  }
-  return result;
-}
-
-Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                        const std::vector<std::string>& names, std::size_t which) {
-  const ParameterChoice choice(scene, names);
-  const std::vector<NamedNumber> known = parameters(scene);
-  std::vector<double> values;
-  values.reserve(names.size());
-  for (const std::string& name : names) {
-    values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
-  }
+/// The slopes of all numbers of a mechanism along one of some parameters, which have these values.
+std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& modes, double t,
+                                 const ParameterChoice& choice, std::vector<double> values,
+                                 const std::vector<std::string>& names, std::size_t which) {
   const double value = values[which];
   Mechanism<double> here = mechanism(scene, modes);
   const std::vector<double*> numbers = numbers_of(here);
@@ -167,10 +123,76 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
                                 "\": a law has a corner at this value: there is no derivative by "
                                 "it; it has one at a slightly larger or smaller value");
   }
-  Mechanism<Dual<double>> result = with_slopes(here);
-  const std::vector<Dual<double>*> duals = numbers_of(result);
-  for (std::size_t i = 0; i < duals.size(); ++i) {
-    *duals[i] = {*numbers[i], slopes[i]};
+  return slopes;
+}
+
+}  // namespace
+
+std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
+  std::vector<int> modes;
+  for (const Effect& effect : scene.effects) {
+    const int joint = effect->joint();
+    modes.push_back(effect->mode_at(t, joint > 0 ? relative(q, joint) : 0.0,
+                                    joint > 0 ? relative(qd, joint) : 0.0, true));
+  }
+  return modes;
+}
+
+Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
+  const Inertia inertia(scene);
+  Mechanism<double> result{.gravity = scene.gravity,
+                           .payload_mass = inertia.payload_mass,
+                           .payload_inertia = inertia.payload_inertia};
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    const Link& link = scene.links[i];
+    result.bodies.push_back(
+        {link.mass, link.length, link.center, link.inertia, inertia.links[i].rotor});
+  }
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    auto& acting = result.effects.emplace_back();
+    acting.place = std::max({effect.joint(), effect.link(), 1}) - 1;
+    const Link& link = scene.links[acting.place];
+    acting.law = effect.law(modes[i], {link.mass, link.length, link.center, scene.gravity});
+    if (!acting.law) acting.couple = effect.couple(modes[i]);
+    if (const std::optional<PivotLaw> pivot = effect.pivot_law(modes[i])) {
+      acting.moves_pivot = true;
+      acting.pivot = *pivot;
+    }
+    for (const Sinusoid& wave : effect.waves()) {
+      acting.waves.push_back({wave.angular_frequency, wave.phase});
+    }
+  }
+  return result;
+}
+
+std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
+                                                         const std::vector<int>& modes, double t,
+                                                         const std::vector<std::string>& names) {
+  const ParameterChoice choice(scene, names);
+  const std::vector<NamedNumber> known = parameters(scene);
+  std::vector<double> values;
+  values.reserve(names.size());
+  for (const std::string& name : names) {
+    values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
+  }
+  Mechanism<double> here = mechanism(scene, modes);
+  std::vector<Mechanism<AlongParameters>> result;
+  for (std::size_t which = 0; which < names.size(); ++which) {
+    const std::size_t lane = which % parameters_at_once;
+    if (lane == 0) {
+      result.push_back(with_slopes(here));
+      const std::vector<AlongParameters*> duals = numbers_of(result.back());
+      const std::vector<double*> numbers = numbers_of(here);
+      for (std::size_t i = 0; i < duals.size(); ++i) {
+        *duals[i] = AlongParameters(*numbers[i]);
+      }
+    }
+    const std::vector<double> slopes = slopes_along(scene, modes, t, choice, values, names, which);
+    const std::vector<AlongParameters*> duals = numbers_of(result.back());
+    for (std::size_t i = 0; i < duals.size(); ++i) {
+      set_lane(duals[i]->slope, static_cast<int>(lane), slopes[i]);
+    }
   }
   return result;
 }
@@ -178,80 +200,123 @@ Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<in
 template <class Number>
 void InverseDynamics<Number>::compute(const Mechanism<Number>& mechanism, double t,
                                       const Numbers& q, const Numbers& qd, const Numbers& qdd) {
-  using Vector2 = Planar<Number>;
   const auto n = static_cast<int>(mechanism.bodies.size());
   sine_.resize(n);
   cosine_.resize(n);
-  pendcore::sine_cosine(q.data(), n, sine_.data(), cosine_.data());
+  sine_cosine(q.data(), n, sine_.data(), cosine_.data());
+  waves_.assign(mechanism.effects.size(), {});
+  at_.resize(n);
+  inertial_.resize(n);
+  loads_.assign(n, {});
+  torques_.resize(n);
+  forces_.resize(n);
+  static const auto go = fastest<&InverseDynamics::go_out_and_back>();
+  go(this, &mechanism, t, q.data(), qd.data(), qdd.data());
+}
+
+template <class Number>
+PENDCORE_INLINE void InverseDynamics<Number>::go_out_and_back(InverseDynamics* self,
+                                                              const Mechanism<Number>* mechanism,
+                                                              double t, const double* q,
+                                                              const double* qd, const double* qdd) {
+  using Vector2 = Planar<Number>;
+  const auto constant = [](double x) { return Constants<Number>::of(x); };
+  const auto n = static_cast<int>(mechanism->bodies.size());
+  const double* const sine = self->sine_.data();
+  const double* const cosine = self->cosine_.data();
 
   // The waves, and the motion of the pivot.
-  waves_.clear();
   Vector2 velocity, acceleration;
-  for (const auto& effect : mechanism.effects) {
-    auto& [s, c] = waves_.emplace_back();
+  for (std::size_t e = 0; e < mechanism->effects.size(); ++e) {
+    const auto& effect = mechanism->effects[e];
+    auto& [s, c] = self->waves_[e];
     for (std::size_t k = 0; k < effect.waves.size(); ++k) {
       const Number angle = t * effect.waves[k].angular_frequency + effect.waves[k].phase;
       sine_cosine(angle, s[k], c[k]);
     }
     if (!effect.moves_pivot) continue;
-    effect.pivot.add_acceleration(Number(t), s, acceleration.x, acceleration.y);
-    effect.pivot.add_velocity(Number(t), c, velocity.x, velocity.y);
+    effect.pivot.add_acceleration(constant(t), s, acceleration.x, acceleration.y);
+    effect.pivot.add_velocity(constant(t), c, velocity.x, velocity.y);
   }
 
   // From the pivot to the tip: where each joint goes, and what it takes to move each link.
-  at_.clear();
-  inertial_.clear();
-  acceleration.y -= mechanism.gravity;
+  acceleration.y = acceleration.y - mechanism->gravity;
   for (int i = 0; i < n; ++i) {
-    const auto& body = mechanism.bodies[i];
-    at_.push_back({.t = t,
-                   .q = q[i],
-                   .qd = qd[i],
-                   .s = sine_[i],
-                   .c = cosine_[i],
-                   .L = body.length,
-                   .angle = relative(q.data(), i + 1),
-                   .rate = relative(qd.data(), i + 1),
-                   .vx_of_joint = velocity.x,
-                   .vy_of_joint = velocity.y});
-    velocity = velocity + body.length * Vector2{-qd[i] * sine_[i], qd[i] * cosine_[i]};
+    const auto& body = mechanism->bodies[i];
+    self->at_[i] = {.t = t,
+                    .q = constant(q[i]),
+                    .qd = constant(qd[i]),
+                    .s = constant(sine[i]),
+                    .c = constant(cosine[i]),
+                    .L = body.length,
+                    .angle = constant(relative(q, i + 1)),
+                    .rate = constant(relative(qd, i + 1)),
+                    .vx_of_joint = velocity.x,
+                    .vy_of_joint = velocity.y};
+    velocity = {velocity.x - (qd[i] * sine[i]) * body.length,
+                velocity.y + (qd[i] * cosine[i]) * body.length};
     const double square = qd[i] * qd[i];
-    const Vector2 of_unit_length{-qdd[i] * sine_[i] - square * cosine_[i],
-                                 qdd[i] * cosine_[i] - square * sine_[i]};
-    inertial_.push_back(body.mass * (acceleration + body.center * of_unit_length));
-    acceleration = acceleration + body.length * of_unit_length;
+    const double x = -qdd[i] * sine[i] - square * cosine[i];  // of an arm of 1 m
+    const double y = qdd[i] * cosine[i] - square * sine[i];
+    self->inertial_[i] = {body.mass * (acceleration.x + x * body.center),
+                          body.mass * (acceleration.y + y * body.center)};
+    acceleration = {acceleration.x + x * body.length, acceleration.y + y * body.length};
   }
 
-  loads_.assign(n, {});
-  for (std::size_t e = 0; e < mechanism.effects.size(); ++e) {
-    const auto& [place, couple, law, moves_pivot, pivot, waves] = mechanism.effects[e];
+  for (std::size_t e = 0; e < mechanism->effects.size(); ++e) {
+    const auto& [place, couple, law, moves_pivot, pivot, waves] = mechanism->effects[e];
+    RowLoads<Number>& loads = self->loads_[place];
     if (couple) {
-      loads_[place].couple(couple->torque(t, relative(q.data(), place + 1),
-                                          relative(qd.data(), place + 1), waves_[e].sine[0]));
+      loads.couple(couple->torque(t, relative(q, place + 1), relative(qd, place + 1),
+                                  self->waves_[e].sine[0]));
     } else if (law) {
-      std::visit([&](const auto& one) { one.add(at_[place], loads_[place]); }, *law);
+      std::visit([&](const auto& one) { one.add(self->at_[place], loads); }, *law);
     }
   }
 
   // From the tip to the pivot.
-  torques_.resize(n);
-  forces_.resize(n);
-  Vector2 beyond = mechanism.payload_mass * acceleration;  // F_{i,i+1}
-  Number torque = mechanism.payload_inertia * Number(qdd[n - 1]);
+  Vector2 beyond{mechanism->payload_mass * acceleration.x,
+                 mechanism->payload_mass * acceleration.y};  // F_{i,i+1}
+  Number torque = qdd[n - 1] * mechanism->payload_inertia;
   for (int i = n; i-- > 0;) {
-    const auto& body = mechanism.bodies[i];
-    const auto across = [&](const Vector2& force) {
-      return cosine_[i] * force.y - sine_[i] * force.x;
+    const auto& body = mechanism->bodies[i];
+    const RowLoads<Number>& loads = self->loads_[i];
+    const Vector2& inertial = self->inertial_[i];
+    const auto across = [&](const Vector2& force) __attribute__((always_inline)) {
+      return cosine[i] * force.y - sine[i] * force.x;
     };
-    torque += body.inertia * Number(qdd[i]) + body.center * across(inertial_[i]) +
-              body.length * across(beyond) - loads_[i].moments;
-    beyond = beyond + inertial_[i] - Vector2{loads_[i].fx, loads_[i].fy};
-    forces_[i] = beyond;
-    torques_[i] = torque + relative(qdd.data(), i + 1) * body.armature - loads_[i].couples;
+    torque = torque + qdd[i] * body.inertia + body.center * across(inertial) +
+             body.length * across(beyond) - loads.moments;
+    beyond = {beyond.x + inertial.x - loads.fx, beyond.y + inertial.y - loads.fy};
+    self->forces_[i] = beyond;
+    self->torques_[i] = torque + relative(qdd, i + 1) * body.armature - loads.couples;
   }
 }
 
 template class InverseDynamics<double>;
-template class InverseDynamics<Dual<double>>;
+template class InverseDynamics<AlongParameters>;
+
+void ChangesOfAccelerations::compute(const std::vector<Mechanism<AlongParameters>>& mechanisms,
+                                     double t, const Numbers& q, const Numbers& qd,
+                                     const Numbers& qdd, const JointForces& forces,
+                                     Eigen::Ref<Matrix> changes) {
+  const auto m = static_cast<Eigen::Index>(forces.joints.size());
+  responses_.resize(q.size(), m);
+  for (Eigen::Index r = 0; r < m; ++r) responses_.col(r) = -forces.response(Vector::Unit(m, r));
+  changes.setZero();
+  for (std::size_t p = 0; p < mechanisms.size(); ++p) {
+    motion_.compute(mechanisms[p], t, q, qd, qdd);
+    const auto first = static_cast<Eigen::Index>(p * parameters_at_once);
+    const auto last =
+        std::min(first + static_cast<Eigen::Index>(parameters_at_once), changes.cols());
+    for (Eigen::Index k = first; k < last; ++k) {
+      for (Eigen::Index r = 0; r < m; ++r) {
+        const double slope =
+            lane(motion_.torques()[forces.joints[r]].slope, static_cast<int>(k - first));
+        changes.col(k) += slope * responses_.col(r);
+      }
+    }
+  }
+}
 
 }  // namespace pendcore

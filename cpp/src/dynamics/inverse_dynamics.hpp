@@ -8,8 +8,8 @@
 ///
 /// (Eqs. (2.3) and (2.4), y downward). F_ext and M_ext are the force of the effects on a link and
 /// its moment about the joint where the link begins; what rotors take and couples give is added to
-/// tau. On numbers that are dual along a parameter p, they give d tau/d p of the same motion, and
-/// thereby d qdd/d p = -M^-1 J^T d tau/d p.
+/// tau. On numbers that are dual along a parameter p, four parameters at a time, they give
+/// d tau/d p of the same motion, and thereby d qdd/d p = -M^-1 J^T d tau/d p.
 #pragma once
 
 #include <array>
@@ -26,8 +26,12 @@
 
 namespace pendcore {
 
+/// A number, and its slopes along four parameters.
+using AlongParameters = Dual<double, Pack<4>>;
+inline constexpr std::size_t parameters_at_once = 4;
+
 /// All numbers on which the torques depend, with each effect in a mode. A user's function is none
-/// of them. `Number` is a double, or a dual number with the slope along a parameter.
+/// of them. `Number` is a double, or one with slopes along parameters.
 template <class Number>
 struct Mechanism {
   struct Body {
@@ -56,13 +60,14 @@ std::vector<int> modes_at(const Scene& scene, double t, const double* q, const d
 
 Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
 
-/// The same with slopes along one of some parameters (pendcore/parameters.hpp), at a time. What
-/// other parameters of the list give stays as it is: the centre of a rod that is named does not
-/// follow its length. Slopes are right to some 13 digits: the constants of laws are smooth
+/// The same with slopes along some parameters (pendcore/parameters.hpp), four in each mechanism, at
+/// a time. What other parameters of the list give stays as it is: the centre of a rod that is named
+/// does not follow its length. Slopes are right to some 13 digits: the constants of laws are smooth
 /// functions of parameters, whose differences are extrapolated. Throws std::invalid_argument for a
 /// name that the scene does not have, and for a value at which a law has a corner.
-Mechanism<Dual<double>> mechanism_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                        const std::vector<std::string>& names, std::size_t which);
+std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
+                                                         const std::vector<int>& modes, double t,
+                                                         const std::vector<std::string>& names);
 
 /// What laws see of one link or joint (effects/laws.hpp).
 template <class Number>
@@ -84,10 +89,6 @@ struct LinkAt {
 template <class Number>
 struct Planar {
   Number x{}, y{};
-
-  friend Planar operator+(const Planar& a, const Planar& b) { return {a.x + b.x, a.y + b.y}; }
-  friend Planar operator-(const Planar& a, const Planar& b) { return {a.x - b.x, a.y - b.y}; }
-  friend Planar operator*(const Number& k, const Planar& a) { return {k * a.x, k * a.y}; }
 };
 
 /// The torques of a motion, and memory for them: an object belongs to one thread.
@@ -102,19 +103,10 @@ class InverseDynamics {
   const std::vector<Number>& torques() const { return torques_; }        ///< tau, N m, (n)
   const std::vector<Planar<Number>>& forces() const { return forces_; }  ///< F_{i-1,i}, N, (n)
 
-  /// The change of qdd with the parameter of dual numbers, (n), where `forces`, with the mass
-  /// matrix of q, say how the free joints respond: -M^-1 J^T d tau/d p.
-  Vector change(const Mechanism<Number>& mechanism, double t, const Numbers& q, const Numbers& qd,
-                const Numbers& qdd, const JointForces& forces)
-    requires(!std::is_same_v<Number, double>)
-  {
-    compute(mechanism, t, q, qd, qdd);
-    less_.resize(static_cast<Eigen::Index>(forces.joints.size()));
-    for (Eigen::Index r = 0; r < less_.size(); ++r) less_[r] = -torques_[forces.joints[r]].slope;
-    return forces.response(less_);
-  }
-
  private:
+  static void go_out_and_back(InverseDynamics* self, const Mechanism<Number>* mechanism, double t,
+                              const double* q, const double* qd, const double* qdd);
+
   struct Waves {
     std::array<Number, 2> sine{}, cosine{};
   };
@@ -125,7 +117,20 @@ class InverseDynamics {
   std::vector<RowLoads<Number>> loads_;
   std::vector<Number> torques_;
   std::vector<Planar<Number>> forces_;
-  Vector less_;
+};
+
+/// The changes of qdd with each of some parameters, and memory for them.
+class ChangesOfAccelerations {
+ public:
+  /// Writes -M^-1 J^T d tau/d p into the first columns of `changes`, (n, parameters), where
+  /// `forces`, with the mass matrix of q, say how the free joints respond.
+  void compute(const std::vector<Mechanism<AlongParameters>>& mechanisms, double t,
+               const Numbers& q, const Numbers& qd, const Numbers& qdd, const JointForces& forces,
+               Eigen::Ref<Matrix> changes);
+
+ private:
+  InverseDynamics<AlongParameters> motion_;
+  Matrix responses_;  ///< -M^-1 J^T, (n, joints)
 };
 
 }  // namespace pendcore

@@ -187,10 +187,9 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
         .by_parameters = Matrix(n, static_cast<Eigen::Index>(of_parameters.size()))};
     (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
     accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      found.by_parameters.col(static_cast<Eigen::Index>(k)) =
-          compiled_->inverse_dynamics.change(mechanism_along(scene, modes, t, names, k), t, q, qd,
-                                             found.qdd, compiled_->free_joints());
+    if (!names.empty()) {
+      compiled_->by_parameters.compute(mechanisms_along(scene, modes, t, names), t, q, qd,
+                                       found.qdd, compiled_->free_joints(), found.by_parameters);
     }
     return found;
   };
