@@ -77,7 +77,7 @@ void Sensitivities::Variation::refuse_from(double t, const std::string& why) {
 /// of their square. At a kink they do not. Notes whether fewer points would have done.
 bool Sensitivities::Variation::has_converged(double h) {
   constexpr double rounding = 1e-14;
-  constexpr double square_root_of_rounding = 3e-7;
+  constexpr double square_root_of_rounding = 3e-8;
   constexpr double fewer = 1e-3;  // a point less leaves larger last coefficients
   has_points_to_spare = true;
   const int width = padded_names();
@@ -86,7 +86,7 @@ bool Sensitivities::Variation::has_converged(double h) {
     const double largest = decay[k], last = decay[width + k], middle = decay[2 * width + k];
     if (!std::isfinite(largest)) return false;
     const double size = now.col(k).cwiseAbs().maxCoeff() + std::abs(h) * largest;
-    const bool falls = last * largest <= 100.0 * middle * middle;
+    const bool falls = last * largest <= 10.0 * middle * middle;
     const double allowed = (falls ? square_root_of_rounding : rounding) * size;
     if (std::abs(h) * last > allowed) return false;
     has_points_to_spare &= falls && std::abs(h) * last <= fewer * allowed;
