@@ -6,14 +6,16 @@
 
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/lock.hpp"
+#include "pendcore/effects/motor.hpp"
 #include "pendcore/parameters.hpp"
 #include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {
 
-/// The number of the link of q0 or qd0 that a name means, from 0, or -1.
-int link_of_start(const std::string& name, const std::string& kind, int n) {
+/// The number that stands in brackets after q0, qd0 or torque in a name, less one; -1 for another
+/// name.
+int number_of(const std::string& name, const std::string& kind, int n) {
   if (!name.starts_with(kind)) return -1;
   for (int i = 0; i < n; ++i) {
     if (name == kind + "[" + std::to_string(i + 1) + "]") return i;
@@ -22,12 +24,35 @@ int link_of_start(const std::string& name, const std::string& kind, int n) {
                               kind + "[" + std::to_string(n) + "]");
 }
 
+/// The same scene with a motor that gives nothing in each joint whose torque is named, and the
+/// names with those of its constants.
+Scene with_torques(Scene scene, std::vector<std::string>& names) {
+  const auto n = static_cast<int>(scene.links.size());
+  const std::vector<bool> locked = locked_joints(scene);
+  for (std::string& name : names) {
+    const int joint = number_of(name, "torque", n);
+    if (joint < 0) continue;
+    if (locked[joint]) {
+      throw std::invalid_argument("sensitivities: \"" + name +
+                                  "\": a Lock holds this joint, which no torque turns");
+    }
+    scene.effects.push_back(Motor{.joint = joint + 1, .constant = 0.0});
+    name = "effect[" + std::to_string(scene.effects.size()) + "].constant";
+  }
+  return scene;
+}
+
 void require_parameter(const Scene& scene, const std::string& name) {
   if (name.starts_with("q[") || name.starts_with("qd[")) {
     throw std::invalid_argument("sensitivities: \"" + name +
                                 "\": a start is named q0[i] or qd0[i]");
   }
-  const ParameterChoice known(scene, {name});  // throws for a name that is none
+  try {
+    const ParameterChoice known(scene, {name});
+  } catch (const std::invalid_argument& unknown) {
+    throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
+                                "; others are q0[i], qd0[i] and torque[j]");
+  }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!scene.effects[i].is<Lock>() || name != "effect[" + std::to_string(i + 1) + "].angle") {
       continue;
@@ -68,18 +93,20 @@ std::vector<JointSupport> slopes_of(const Scene& scene, const std::string& name)
 
 VariationalEquations::VariationalEquations(const Scene& scene,
                                            const std::vector<std::string>& names)
-    : scene_(scene),
-      names_(names),
+    : names_(names),
+      known_names_(names),
+      scene_(with_torques(scene, known_names_)),
       n_(static_cast<int>(scene.links.size())),
-      equations_(equations_of_motion(scene)),
-      jacobian_(scene, equations_) {
+      equations_(equations_of_motion(scene_)),
+      jacobian_(scene_, equations_) {
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::string& name = names[k];
-    if (link_of_start(name, "q0", n_) >= 0 || link_of_start(name, "qd0", n_) >= 0) continue;
-    require_parameter(scene, name);
+    const std::string& name = known_names_[k];
+    if (number_of(name, "q0", n_) >= 0 || number_of(name, "qd0", n_) >= 0) continue;
+    require_parameter(scene_, name);
     names_of_parameters_.push_back(name);
-    parameters_.push_back(
-        {.column = static_cast<Eigen::Index>(k), .name = name, .supports = slopes_of(scene, name)});
+    parameters_.push_back({.column = static_cast<Eigen::Index>(k),
+                           .name = name,
+                           .supports = slopes_of(scene_, name)});
   }
 }
 
@@ -87,8 +114,8 @@ Matrix VariationalEquations::changes_of_start() const {
   Matrix changes = Matrix::Zero(2 * n_, static_cast<Eigen::Index>(names_.size()));
   for (Eigen::Index k = 0; k < changes.cols(); ++k) {
     const std::string& name = names_[static_cast<std::size_t>(k)];
-    const int angle = link_of_start(name, "q0", n_);
-    const int rate = link_of_start(name, "qd0", n_);
+    const int angle = number_of(name, "q0", n_);
+    const int rate = number_of(name, "qd0", n_);
     if (angle >= 0) changes(angle, k) = 1.0;
     if (rate >= 0) changes(n_ + rate, k) = 1.0;
   }
@@ -102,7 +129,8 @@ void VariationalEquations::choose_laws(double t, const double* y) {
 }
 
 void VariationalEquations::take_laws(double t, const EquationsOfMotion& run) {
-  modes_ = run.effects->modes;
+  modes_ = equations_.effects->modes;  // the run does not have the motors of named torques
+  std::ranges::copy(run.effects->modes, modes_.begin());
   for (std::size_t i = 0; i < modes_.size(); ++i) equations_.effects->put_mode(i, modes_[i]);
   equations_.held_joints->restore(*equations_.effects, run.held_joints->saved_state(),
                                   run.held_joints->has_failed());

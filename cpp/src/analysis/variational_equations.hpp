@@ -24,8 +24,9 @@ namespace pendcore {
 
 class VariationalEquations {
  public:
-  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, or a parameter (parameters.hpp). Throws
-  /// std::invalid_argument for another name.
+  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, a constant "torque[j]" in a joint beside
+  /// what its effects give, or a parameter (parameters.hpp). Throws std::invalid_argument for
+  /// another name.
   VariationalEquations(const Scene& scene, const std::vector<std::string>& names);
   VariationalEquations(const VariationalEquations&) = delete;  // the Jacobian refers to the modes
   VariationalEquations& operator=(const VariationalEquations&) = delete;
@@ -63,8 +64,8 @@ class VariationalEquations {
  private:
   void put_along(double t);
 
+  std::vector<std::string> names_, known_names_;
   Scene scene_;
-  std::vector<std::string> names_;
   int n_;
   EquationsOfMotion equations_;
   Jacobian jacobian_;

@@ -116,12 +116,14 @@ def simulate(
     wanted = asked.pop("sensitivities", None) if "sensitivities" in asked else None
     if error is not None:
         require_options(asked, simulate)
-        if wanted:
-            raise ValueError(
-                f"sensitivities = {wanted!r}: not with error: give method, rtol and atol"
-            )
+        names = listed_names("sensitivities", wanted, "q0[1]") if wanted else ()
+        if names:  # a wrong name is told before anything runs
+            _core.Sensitivities(scene._compiled, list(names))
         start = Start(scene, q0, qd0, t_start, t_end)
-        return checked(_solved_to_error(start, error, asked), on_failure)
+        solution = checked(_solved_to_error(start, error, asked), on_failure)
+        if names:
+            _find_sensitivities(solution, names)
+        return solution
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
     watch = None
@@ -143,6 +145,16 @@ def simulate(
             close(report)
         return solution
     return checked(completed(solution, report), on_failure)
+
+
+def _find_sensitivities(solution: Solution, names: tuple[str, ...]) -> None:
+    """Find the derivatives along a run that is there."""
+    from pendcore._run.sensitivities import derivatives_of
+
+    watch = derivatives_of(solution, names)
+    solution.sensitivities, solution.sensitivity_names = watch.values, names
+    if watch.refusal:
+        warn(watch.refusal)
 
 
 def _solved_to_error(start: Start, error: float, options: dict[str, Any]) -> Solution:

@@ -510,6 +510,34 @@ class Solution:
         """
         return self.estimate_error(time_limit=time_limit).valid_until(limit, of=of)
 
+    def sensitivity_errors(self) -> Floats:
+        """Estimate how far the sensitivities of this run are off, as the run's tolerances let them.
+
+        They are compared with those along a run whose tolerances are a tenth, or whose steps are
+        half as long. What is larger than the sensitivities themselves means nothing: past
+        `valid_until` they are those of the computed curve, and grow with its error.
+
+        Returns
+        -------
+        ndarray, (n_t, k)
+            The largest difference among the angles (rad) and rates (rad/s) per unit of each name.
+
+        Raises
+        ------
+        ValueError
+            If the run has no sensitivities.
+
+        Examples
+        --------
+        >>> scene = pc.Scene.textbook()
+        >>> sol = pc.simulate(scene, (0, 5), 0.5, sensitivities=["q0[1]"], rtol=1e-6)
+        >>> bool(sol.sensitivity_errors().max() < 1e-2)
+        True
+        """
+        from pendcore._run.sensitivities import errors_of
+
+        return errors_of(self)
+
     def lyapunov(
         self,
         *,

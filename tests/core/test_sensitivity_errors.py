@@ -1,0 +1,88 @@
+"""What runs say of the error of their derivatives, and what else has a derivative."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+E = pc.effects
+TEXTBOOK = pc.Scene.textbook()
+BUMPY = TEXTBOOK.replace(
+    effects=[
+        E.JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4),
+        E.DryJointFriction(joint=1, coulomb=1.0, static=1.4),
+    ]
+)
+NAMES = ["q0[1]", "gravity", "torque[2]"]
+START: Any = {"t_span": (0, 2), "q0": [0.3, 0.5], "qd0": [0.0, 1.0], "sensitivities": NAMES}
+
+
+@pytest.mark.parametrize("scene", [TEXTBOOK, BUMPY], ids=["smooth", "bumpy"])
+@pytest.mark.parametrize(
+    "options",
+    [{"rtol": 1e-6}, {"method": "dop853", "rtol": 1e-9}, {"error": 1e-7},
+     {"method": "rk4", "step": 1e-3}],
+    ids=["loose", "usual", "to an error", "fixed steps"],
+)  # fmt: skip
+def test_the_error_of_derivatives_is_known(scene: pc.Scene, options: dict[str, Any]) -> None:
+    sol = pc.simulate(scene, **START, **options)
+    assert sol.sensitivities is not None
+    told = sol.sensitivity_errors()
+    assert told.shape == (len(sol.t), 3)
+    best = pc.simulate(scene, **START, rtol=1e-14, atol=1e-17, t_eval=np.unique(sol.t))
+    assert best.sensitivities is not None
+    end = np.abs(sol.sensitivities[-1] - best.sensitivities[-1]).max(axis=0)
+    assert (end <= 3 * told[-1] + 1e-12).all()
+    assert (told[-1] <= 3 * end + 1e-11).all()
+
+
+def test_of_a_run_at_the_limit_of_rounding_and_backward() -> None:
+    for span in ((0, 2), (2, 0)):
+        sol = pc.simulate(TEXTBOOK, **START | {"t_span": span}, rtol=1e-13, atol=1e-16)
+        assert sol.sensitivity_errors().max() < 1e-9
+
+
+def test_a_run_to_an_error_has_the_derivatives_of_its_own_steps() -> None:
+    sol = pc.simulate(BUMPY, **START, error=1e-8)
+    how = {name: sol._run.arguments[name] for name in ("method", "rtol", "atol")}
+    plain = pc.simulate(BUMPY, **START, **how)
+    np.testing.assert_array_equal(plain.t, sol.t)
+    np.testing.assert_array_equal(plain.sensitivities, sol.sensitivities)
+    with pytest.raises(ValueError, match=r'"lnk\[1\].*others are q0\[i\], qd0\[i\] and torque'):
+        pc.simulate(BUMPY, (0, 1), 0.3, error=1e-8, sensitivities=["lnk[1].mass"])
+
+
+def test_only_a_run_with_derivatives_has_their_error() -> None:
+    with pytest.raises(ValueError, match="the run has no sensitivities"):
+        pc.simulate(TEXTBOOK, (0, 1), 0.3).sensitivity_errors()
+
+
+@pytest.mark.parametrize("scene", [TEXTBOOK, BUMPY], ids=["smooth", "bumpy"])
+def test_a_torque_is_that_of_a_motor(scene: pc.Scene) -> None:
+    names = {"sensitivities": ["torque[1]", "torque[2]"]}
+    sol = pc.simulate(scene, **START | names, rtol=1e-13, atol=1e-16, store="end")
+    assert sol.sensitivities is not None
+    for joint in (1, 2):
+        motor = E.Motor(joint=joint, constant=0.0)
+        driven = scene.replace(effects=[*scene.effects, motor])
+        name = {"sensitivities": [f"effect[{len(driven.effects)}].constant"]}
+        other = pc.simulate(driven, **START | name, rtol=1e-13, atol=1e-16, store="end")
+        assert other.sensitivities is not None
+        found = sol.sensitivities[-1, :, joint - 1]
+        np.testing.assert_allclose(found, other.sensitivities[-1, :, 0], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("torque[3]", r"must be torque\[1\] to torque\[2\]"),
+        ("torque[1]", "a Lock holds this joint"),
+    ],
+)
+def test_a_torque_that_turns_nothing_is_refused(name: str, told: str) -> None:
+    locked = TEXTBOOK.replace(effects=[E.Lock(joint=1)])
+    with pytest.raises(ValueError, match=told):
+        pc.simulate(locked, (0, 1), [0.3, 0.5], sensitivities=[name])
