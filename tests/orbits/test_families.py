@@ -1,0 +1,76 @@
+"""Families of orbits agree with elliptic integrals and with runs that settle; folds are passed."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pendcore as pc
+import pytest
+
+E = pc.effects
+TEXTBOOK = pc.Scene.textbook()
+ROD = TEXTBOOK.replace(links=[pc.Link(mass=1.0, length=1.0)])
+
+
+def test_a_family_of_swings_has_the_periods_of_the_elliptic_integral():
+    small = pc.equilibria(ROD)[0].orbit(1)
+    family = small.continued("energy", until=0.99 * ROD.gravity / 2)
+    natural = mpmath.sqrt(mpmath.mpf(3) / 2 * mpmath.mpf(ROD.gravity))
+    assert 10 < len(family) < 60
+    for one in family:
+        k2 = (1 + mpmath.mpf(one.energy) / (mpmath.mpf(ROD.gravity) / 2)) / 2
+        assert abs(one.period - 4 * mpmath.ellipk(k2) / natural) < 1e-11
+    assert family[-1].energy == pytest.approx(0.99 * ROD.gravity / 2, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("name", "until", "power"), [("gravity", 2.0, -0.5), ("link[1].length", 3.0, 0.5)]
+)
+def test_a_swing_from_level_keeps_its_shape_as_gravity_or_length_changes(name, until, power):
+    """At the energy of a rod that is level, 0, the period is 4 K(sin 45 deg) sqrt(2 L/3 g)."""
+    level = pc.periodic_orbit(ROD, [0.0])
+    last = level.continued(name, until)[-1]
+    share = (until / ROD.parameters()[name]) ** power
+    assert last.scene.parameters()[name] == until
+    assert last.period == pytest.approx(level.period * share, rel=1e-12)
+    assert last.energy == pytest.approx(0, abs=1e-12)
+
+
+def driven(frequency):
+    """A damped rod on which a torque acts, so weak that it swings in two ways below resonance."""
+    push = E.Sinusoid(amplitude=0.25, angular_frequency=frequency)
+    damper = E.ViscousJoint(joint=1, damping=0.05)
+    return ROD.replace(effects=[E.Motor(joint=1, sinusoid=push), damper])
+
+
+def settled(frequency, start):
+    span = (0, 2 * np.pi / frequency * 200)
+    return pc.simulate(driven(frequency), span, *np.split(start, 2), store="end").y[:, -1]
+
+
+def test_a_resonance_curve_turns_back_twice_and_runs_settle_on_its_stable_parts():
+    name = "effect[1].sinusoid.angular_frequency"
+    fast = pc.periodic_orbit(driven(4.6), *np.split(settled(4.6, np.array([np.pi / 2, 0])), 2))
+    family = fast.continued(name, 2.6, step=0.05)
+    frequencies = np.array([2 * np.pi / one.period for one in family])
+    steps = np.sign(np.diff(frequencies))
+    assert np.count_nonzero(np.diff(steps)) == 2  # two folds
+    back = slice(*np.flatnonzero(np.diff(steps)) + 1)
+    assert not any(one.is_stable for one in family[back][2:-2])
+    for one in family[::7]:
+        w = 2 * np.pi / one.period
+        again = settled(w, np.array([*one.q0 + 1e-3, *one.qd0]))
+        away = np.abs(again - [*one.q0, *one.qd0]).max()
+        assert (away < 1e-4) == one.is_stable, (w, away)
+
+
+def test_a_family_that_does_not_come_there_says_how_far_it_came():
+    small = pc.equilibria(TEXTBOOK)[0].orbit(1)
+    with pytest.raises(RuntimeError, match="5 orbits are all that were asked for") as told:
+        small.continued("energy", 0.0, most=5)
+    assert len(told.value.orbits) == 5
+    with pytest.raises(ValueError, match=r"name = 'gravty': did you mean 'gravity'\?"):
+        small.continued("gravty", 1.0)
+    fast = pc.periodic_orbit(driven(4.6), *np.split(settled(4.6, np.array([np.pi / 2, 0])), 2))
+    with pytest.raises(ValueError, match="nothing keeps the energy here"):
+        fast.continued("energy", 1.0)
