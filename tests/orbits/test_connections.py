@@ -121,6 +121,9 @@ def test_homoclinic_connections_are_those_of_the_paper(which, energy, side, sect
         assert x.angle > 0.1
         kinetic, potential = SCENE.energy(0.0, x.q, x.qd)
         assert kinetic + potential == pytest.approx(energy, abs=1e-9)
+        t, y = x.motion()
+        assert (np.diff(t) > 0).all()
+        assert np.abs(np.diff(y[:, :2], axis=0)).max() < 1
 
 
 def test_a_heteroclinic_connection_is_one_motion_from_orbit_to_orbit():

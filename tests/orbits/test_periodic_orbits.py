@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from fractions import Fraction
 
 import mpmath
@@ -100,6 +101,40 @@ def test_liouville_the_multipliers_of_a_driven_rod_shrink_area_as_its_damping_do
     assert orbit.is_stable == (torque < 8)
     if orbit.is_stable:
         np.testing.assert_allclose(late, [*orbit.q0, *orbit.qd0], atol=1e-5)
+
+
+def test_a_rod_that_feeds_itself_has_a_cycle_whose_multiplier_is_the_integral_of_its_damping():
+    """Tau = -(b w + c w^3), b < 0: areas shrink by exp(-int (b + 3 c w^2)/J dt), J = 1/3."""
+    with warnings.catch_warnings(action="ignore"):  # a damping below 0 is allowed, and told
+        scene = ROD.replace(effects=[E.ViscousJoint(joint=1, damping=-0.1, damping3=0.02)])
+    late = pc.simulate(scene, (0, 100), [2.0], rtol=1e-12)
+    orbit = pc.periodic_orbit(scene, late.q[-1], late.qd[-1])
+    assert not orbit.is_forced
+    times = np.linspace(0, orbit.period, 4097)[:-1]
+    rates = orbit.solution(rtol=1e-13, t_eval=times).qd[:, 0]
+    shrinks = np.exp(-3 * orbit.period * np.mean(-0.1 + 0.06 * rates**2))
+    np.testing.assert_allclose(orbit.multipliers, [1, shrinks], rtol=1e-10)
+    again = pc.periodic_orbit(scene, orbit.q0 + 0.3, orbit.qd0, orbit.period)
+    assert abs(again.period - orbit.period) <= again.period_error + orbit.period_error
+
+
+@pytest.mark.parametrize("stability", ["unstable", "stable"])
+def test_nothing_depends_on_the_number_of_arcs(stability):
+    one = pc.equilibria(TEXTBOOK)[2].orbit(1, amplitude=0.3)
+    start = one.q0, one.qd0, one.period
+    few, many = (pc.periodic_orbit(TEXTBOOK, *start, arcs=arcs) for arcs in (1, 5))
+    (single,) = few.arcs
+    names = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]"]
+    run = pc.simulate(TEXTBOOK, (0, few.period), *np.split(single, 2), sensitivities=names)
+    np.testing.assert_allclose(many.monodromy, run.sensitivities[-1], rtol=1e-6)
+    np.testing.assert_allclose(many.multipliers, few.multipliers, rtol=1e-9)
+    tubes = [x.manifold(stability, offset=1e-3) for x in (few, many)]
+    for phase in (0.0, 0.37, 0.81):
+        starts = np.array([tube.start(phase) for tube in tubes])
+        away = starts - few.solution(rtol=1e-13)(phase * few.period)
+        assert (np.abs(away).max(axis=1) > 1e-4).all()
+        np.testing.assert_allclose(*(x / np.linalg.norm(x) for x in away), atol=1e-6)
+        assert np.abs(away).max() < 5e-3  # a rate counts over 2 pi/period, as 4.8 here
 
 
 @pytest.mark.parametrize(("eps", "w"), [(0.02, 82.6393), (0.05, 33.0639)])
