@@ -270,17 +270,22 @@ class Shooting:
     ) -> Closed:
         """Return arcs that close, with the errors that runs and rounding leave in them.
 
-        These are twice the correction that a second method, at a tighter tolerance, would make,
+        These are three times what a second method, at a tighter tolerance, would correct,
         the last correction, and what the condition makes of rounding errors.
         """
         other = self.gaps(arcs, self.ends(arcs, **SECOND_OPINION)[0]).reshape(-1)
         residual = np.zeros(inverse.shape[1])
         residual[: len(other)] = other
         largest = np.abs(np.vstack([arcs.states, made.ends]) / self.scales).max()
-        rounding = np.finfo(float).eps * (1 + largest)
+        rounding = np.full(inverse.shape[1], np.finfo(float).eps * (1 + largest))
+        if self.energy is not None:
+            scene, start = self.at(arcs.value), arcs.states[0]
+            parts = np.abs(scene.energy(0.0, *np.split(start, 2))).sum()
+            slope = np.linalg.norm(energy_gradient(scene, start) * self.scales)
+            rounding[len(other) + 1] = np.finfo(float).eps * parts / slope
         columns = made.columns[: len(inverse)]
-        opinion = np.abs(inverse @ residual) + np.linalg.norm(inverse, axis=1) * rounding
-        errors = 2 * columns * opinion + np.abs(step)
+        opinion = np.abs(inverse @ residual) + np.linalg.norm(inverse * rounding, axis=1)
+        errors = 3 * columns * opinion + np.abs(step)
         closure = float(np.abs(self.gaps(arcs, made.ends)).max())
         tangent = np.linalg.svd(made.jacobian)[2][-1]
         return Closed(arcs, made.transitions, closure, errors, corrections, tangent)
