@@ -100,7 +100,7 @@ ABOUT_UP_DOWN = [
     ("which", "energy", "side", "section", "windows"),
     [
         (1, 0.2, 1, "hanging 2", ABOUT_DOWN_UP),
-        # The 8142 steps of 1e-4 s of that orbit of theirs are the period at 0.2003 J, not at 0.2 J.
+        # Their orbit here has 8144 states, as one of 0.2003 J would have, not one of 0.2 J: 8140.
         (2, 0.2003, -1, "hanging 1", ABOUT_UP_DOWN),
     ],
 )
@@ -123,7 +123,7 @@ def test_homoclinic_connections_are_those_of_the_paper(which, energy, side, sect
         assert kinetic + potential == pytest.approx(energy, abs=1e-9)
         t, y = x.motion()
         assert (np.diff(t) > 0).all()
-        assert np.abs(np.diff(y[:, :2], axis=0)).max() < 1
+        assert np.abs(np.diff(y[:, :2], axis=0)).max() < 0.3
 
 
 def test_a_heteroclinic_connection_is_one_motion_from_orbit_to_orbit():
@@ -135,11 +135,11 @@ def test_a_heteroclinic_connection_is_one_motion_from_orbit_to_orbit():
     assert len(found) == 2
     for x in found:
         t, y = x.motion()
-        assert (np.diff(t) > 0).all()
-        assert np.abs(np.diff(y[:, :2], axis=0)).max() < 0.8
         for end, last, one in ((t[0], y[0], leaves), (t[-1], y[-1], comes)):
-            sol = pc.simulate(SCENE, (0, end), x.q, x.qd, rtol=1e-13, atol=1e-16, method="dop853")
-            np.testing.assert_allclose(sol.y[:, -1], last + sol.y[:, 0] - y[t == 0][0], atol=2e-4)
+            how = {"rtol": 1e-13, "atol": 1e-16, "method": "dop853"}
+            sol = pc.simulate(SCENE, (0, end), x.q, x.qd, **how)
+            np.testing.assert_allclose(np.sin(sol.q[-1] - last[:2]), 0, atol=2e-4)
+            np.testing.assert_allclose(sol.qd[-1], last[2:], atol=2e-4)
             times = np.linspace(0, one.period, 20001)
             apart = one.solution(rtol=1e-13, t_eval=times).y.T - sol.y[:, -1]
             apart[:, :2] = (apart[:, :2] + np.pi) % (2 * np.pi) - np.pi

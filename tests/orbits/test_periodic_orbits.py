@@ -213,6 +213,27 @@ def test_an_orbit_of_two_rods_is_as_far_from_that_in_36_digits_as_it_says(found)
     assert orbit.state_error.max() < 1e-11
 
 
+@pytest.mark.parametrize(("which", "energy"), [(0, -10.0), (1, -4.6), (2, 12.0)])
+def test_multipliers_are_those_of_differences_in_36_digits(which, energy):
+    """The monodromy's error is that of a start that is rounded, as often as it grows."""
+    mode = 2 if which == 0 else 1
+    orbit = pc.equilibria(TEXTBOOK)[which].orbit(mode).continued("energy", energy)[-1]
+    start = [*map(Fraction, [*orbit.q0, *orbit.qd0])]
+    little, chain = Fraction(1, 10**14), RodChain([1.0, 1.0], [1.0, 1.0], TEXTBOOK.gravity)
+    columns = []
+    for i in range(4):
+        moved = [[x + s * little * (i == k) for k, x in enumerate(start)] for s in (1, -1)]
+        (here,), (there,) = (motion(chain, y[:2], y[2:], [orbit.period], 36) for y in moved)
+        columns.append([(a - b) / (2 * little) for a, b in zip(here, there, strict=True)])
+    with mpmath.workdps(36):
+        matrix = mpmath.matrix([[number(x) for x in column] for column in columns])
+        values = [complex(x) for x in mpmath.eig(matrix, left=False, right=False)]
+    largest = np.abs(orbit.multipliers[0])
+    for one in orbit.multipliers[[0, -1]]:
+        off = np.abs(np.array(values) / one - 1).min()
+        assert off < 1e-12 + 4e-15 * largest
+
+
 def test_an_orbit_so_unstable_that_no_run_returns_is_cut_into_arcs():
     _, down_up, *_ = pc.equilibria(TEXTBOOK)
     orbit = down_up.orbit(1).continued("energy", 15.0)[-1]

@@ -41,7 +41,8 @@ class Connection:
     phases : (float, float)
         Of the motions along the unstable and along the stable manifold.
     leaving, arriving : Solution
-        From near the first orbit to the section, and from near the second, backward.
+        From near the first orbit to the section, and from near the second, backward; both with
+        dense output.
 
     Examples
     --------
@@ -68,17 +69,20 @@ class Connection:
         at = ", ".join(f"{x:.9g}" for x in (*self.q, *self.qd))
         return f"<Connection: passes ({at}) to {self.error:.0e} rad, angle {self.angle:.3g} rad>"
 
-    def motion(self) -> tuple[Floats, Floats]:
-        """Return times, s, (k,), 0 in the section, and states, (k, 2n): both halves in order.
+    def motion(self, count: int = 200) -> tuple[Floats, Floats]:
+        """Return times, s, (2 count - 1,), even in each half, and states, (2 count - 1, 2n).
 
-        Angles are those of the first half: the second is turned by whole turns to go on there.
+        The time is 0 in the section. Angles are those of the first half: the second is turned by
+        whole turns to go on there.
         """
         first, second = self.leaving, self.arriving
         n = len(self.q)
         turned = np.zeros(2 * n)
         turned[:n] = 2 * np.pi * np.rint((first.q[-1] - second.q[-1]) / (2 * np.pi))
-        t = np.concatenate([first.t - first.t[-1], second.t[-2::-1] - second.t[-1]])
-        return t, np.vstack([first.y.T, second.y.T[-2::-1] + turned])
+        before = np.linspace(first.t[0], first.t[-1], count)
+        after = np.linspace(second.t[-1], second.t[0], count)[1:]
+        t = np.concatenate([before - first.t[-1], after - second.t[-1]])
+        return t, np.vstack([first(before).T, second(after).T + turned])
 
 
 def connections(
@@ -221,7 +225,8 @@ def _refined(
         q=places[-1][:2], qd=places[-1][2:], gap=float(np.abs(off).max()),
         error=float(2 * (by_offset + by_method).max() + np.abs(off).max()),
         angle=float(np.arctan2(np.linalg.svd(lines)[1].prod(), abs(lines[:, 0] @ lines[:, 1]))),
-        phases=phases, leaving=both[0].run(phases[0]), arriving=both[1].run(phases[1]),
+        phases=phases, leaving=both[0].run(phases[0], store="dense"),
+        arriving=both[1].run(phases[1], store="dense"),
     )  # fmt: skip
 
 
