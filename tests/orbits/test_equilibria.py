@@ -53,6 +53,16 @@ def test_rods_that_hang_or_stand_are_all_found_and_have_their_rates(n):
         assert np.abs(A @ vectors - vectors * values).max() < 1e-12 * np.abs(values).max() ** 2
 
 
+def test_every_mode_of_four_rods_that_goes_on_becomes_an_orbit():
+    scene = TEXTBOOK.replace(links=[pc.Link(mass=1.0, length=1.0)] * 4)
+    for one in pc.equilibria(scene):
+        for mode, w in enumerate(one.frequencies, 1):
+            orbit = one.orbit(mode, amplitude=0.05)
+            assert orbit.closure < 1e-12
+            assert orbit.corrections <= 6
+            assert orbit.period == pytest.approx(2 * np.pi / w, rel=0.02)
+
+
 def test_two_rods_have_the_frequencies_of_the_textbook():
     hanging, _, _, upright = pc.equilibria(TEXTBOOK)
     np.testing.assert_allclose(hanging.frequencies, NATURAL, rtol=1e-14)

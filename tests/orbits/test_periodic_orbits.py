@@ -199,7 +199,7 @@ def exactly(x):
     [
         lambda: pc.equilibria(TEXTBOOK)[0].orbit(2),  # its energy hardly tells its size
         lambda: pc.equilibria(TEXTBOOK)[1].orbit(1).continued("energy", -4.6)[-1],
-        lambda: pc.equilibria(TEXTBOOK)[2].orbit(1).continued("energy", 12.0)[-1],
+        lambda: pc.equilibria(TEXTBOOK)[2].orbit(1).continued("energy", 12.0)[3],  # on its way
         lambda: pc.periodic_orbit(TEXTBOOK, [np.pi / 2] * 2, [12.0, 12.0]),
     ],
     ids=["down-down", "down-up", "up-down", "turning"],

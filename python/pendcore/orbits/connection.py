@@ -37,7 +37,7 @@ class Connection:
     gap : float
         By how much the two halves miss each other, rad.
     angle : float
-        Between the manifolds in the section, rad: 0 where they touch.
+        Between the manifolds in the section, rad, rates as in ``error``: 0 where they touch.
     phases : (float, float)
         Of the motions along the unstable and along the stable manifold.
     leaving, arriving : Solution
@@ -159,14 +159,16 @@ def _meetings(one: Floats, other: Floats) -> list[tuple[float, float]]:
     along = [np.roll(x, -1, axis=0) - x for x in (a, b)]
     for x in along:  # where an angle jumps by a turn there is no line
         x[np.abs(x[:, 0]) > np.pi] = np.nan
-    u, v = along[0][:, np.newaxis], along[1][np.newaxis]
-    apart = b[np.newaxis] - a[:, np.newaxis]
+    found = []
     with np.errstate(invalid="ignore", divide="ignore"):
-        area = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-        s = (apart[..., 0] * v[..., 1] - apart[..., 1] * v[..., 0]) / area
-        r = (apart[..., 0] * u[..., 1] - apart[..., 1] * u[..., 0]) / area
-        i, j = np.nonzero((s >= 0) & (s < 1) & (r >= 0) & (r < 1))
-    return [((x + s[x, y]) / len(a), (y + r[x, y]) / len(b)) for x, y in zip(i, j, strict=True)]
+        for i, (start, u) in enumerate(zip(a, along[0], strict=True)):
+            apart, v = b - start, along[1]
+            area = u[0] * v[:, 1] - u[1] * v[:, 0]
+            s = (apart[:, 0] * v[:, 1] - apart[:, 1] * v[:, 0]) / area
+            r = (apart[:, 0] * u[1] - apart[:, 1] * u[0]) / area
+            for j in np.flatnonzero((s >= 0) & (s < 1) & (r >= 0) & (r < 1)):
+                found.append(((i + s[j]) / len(a), (j + r[j]) / len(b)))
+    return found
 
 
 def _newton(

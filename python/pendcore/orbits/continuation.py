@@ -11,7 +11,7 @@ from pendcore.orbits.shooting import GROWTH, Arcs, Closed, NotClosedError, Shoot
 
 SHORTEST = 1e-6
 """Of the steps that are tried: below it the family is lost."""
-EASY = 4
+EASY = 5
 """So few corrections that the next step may be longer."""
 
 
@@ -30,7 +30,7 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
     """
     here, found = shooting.closed(arcs), list[Closed]()
     onward = np.sign(until - arcs.value)
-    step, ahead, trouble = longest / 4, _ends(here.tangent, arcs), ""
+    step, ahead = longest / 4, _ends(here.tangent, arcs)
     if ahead[-1] * onward < 0:
         ahead = -ahead
     while len(found) + 1 < most:
@@ -41,14 +41,13 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
             there = shooting.closed(guess, tangent)
             if abs(_ends(there.tangent, there.arcs) @ _ends(tangent, here.arcs)) < 0.5:
                 raise NotClosedError("it turns too fast")
+            if (there.arcs.value - until) * (here.arcs.value - until) <= 0:
+                return Family([*found, _at(shooting, here.arcs, there.arcs, until)])
         except (NotClosedError, ValueError) as failure:  # a parameter may leave its range
-            trouble = str(failure)
             step /= 2
             if step < SHORTEST:
-                return Family(found, trouble)
+                return Family(found, str(failure))
             continue
-        if (there.arcs.value - until) * (here.arcs.value - until) <= 0:
-            return Family([*found, _at(shooting, here.arcs, there.arcs, until)])
         found.append(there)
         ahead = _ends(tangent, here.arcs)
         here = there

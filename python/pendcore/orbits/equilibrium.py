@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
+from math import ceil, log
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,7 @@ from pendcore import Scene
 from pendcore.explanation.equilibria import FreeAngles
 from pendcore.messages import Floats, require_scene, vector, whole_number
 from pendcore.orbits.periodic_orbit import PeriodicOrbit, periodic_orbit
-from pendcore.orbits.shooting import total_energy
+from pendcore.orbits.shooting import GROWTH, total_energy
 
 MOST_LINKS = 10
 """A chain of so many has a thousand poses in which its links hang or stand."""
@@ -127,10 +128,13 @@ class Equilibrium:
         (size,) = vector("amplitude", amplitude, 1, "rad")
         if not size:
             raise ValueError("amplitude = 0.0: must not be 0 (rad)")
-        n = len(self.q)
-        which = int(np.argmin(np.abs(self.eigenvalues - 1j * there[mode - 1])))
-        shape = self.eigenvectors[:n, which].real
-        return periodic_orbit(self.scene, self.q + size * shape, 0.0, 2 * np.pi / there[mode - 1])
+        w = there[mode - 1]
+        which = int(np.argmin(np.abs(self.eigenvalues - 1j * w)))
+        grown = self.growth.max(initial=0.0) * 2 * np.pi / w
+        turns = np.linspace(0, 2j * np.pi, max(2, ceil(grown / log(GROWTH)) + 1))[:-1]
+        swing = size * (self.eigenvectors[:, which] * np.exp(turns)[:, np.newaxis]).real
+        q, qd = np.split(swing, 2, axis=1)
+        return periodic_orbit(self.scene, self.q + q, qd, 2 * np.pi / w)
 
 
 def equilibria(

@@ -62,8 +62,8 @@ class PeriodicOrbit:
     closure : float
         By how much the arcs of the orbit fail to close, rad; rates count over 2 pi/period.
     state_error : ndarray, (2n,)
-        How far (q0, qd0) may be from the orbit, rad and rad/s: along the orbit that has the same
-        phase, by a run of another method and by the condition of the equations.
+        How far (q0, qd0) may be from the orbit, rad and rad/s, at the same phase: what runs of
+        another method and rounding make of it, by the condition of the equations.
     period_error : float
         The same of the period, s; 0 where a drive sets it.
     corrections : int
@@ -202,7 +202,7 @@ class PeriodicOrbit:
         Parameters
         ----------
         stability : {"unstable", "stable"}
-            Away from the orbit forward in time, or backward.
+            Away from the orbit forward in time, or backward: along what grows fastest.
         side : {1, -1}
             The side of the orbit. A change of sign of ``side`` is one of the direction.
         until : event, optional

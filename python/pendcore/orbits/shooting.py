@@ -93,7 +93,11 @@ def energy_gradient(scene: Scene, state: Floats) -> Floats:
     return gradient
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+def _inverse(jacobian: Floats) -> Floats:
+    return np.linalg.pinv(jacobian, rcond=1e-11).astype(float)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shooting:
     """What is to hold of an orbit.
 
@@ -241,14 +245,13 @@ class Shooting:
                 residual = np.append(residual, tangent @ away)
             elif self.free:
                 jacobian = jacobian[:, :-1]
-            inverse = np.linalg.pinv(jacobian, rcond=1e-11).astype(float)
-            step = -inverse @ residual
+            step = -_inverse(jacobian) @ residual
             size = float(np.abs(step).max())
             if not np.isfinite(size):
                 break
             unknowns: Floats = step * made.columns[: len(step)]
-            if size < 1e-12 or (size < 1e-7 and size > before / 4):
-                return self._certain(arcs, made, inverse, unknowns, k)
+            if size < 1e-14 or (size < 1e-7 and size > before / 4):
+                return self._certain(arcs, made, unknowns, k)
             if self.free and tangent is None:
                 unknowns = np.append(unknowns, 0.0)
             arcs = self.moved(arcs, unknowns * min(1.0, LONGEST / size))
@@ -265,14 +268,14 @@ class Shooting:
         rest += [one.value - other.value] if self.free else []
         return np.concatenate([(one.states - other.states).reshape(-1), rest])
 
-    def _certain(
-        self, arcs: Arcs, made: System, inverse: Floats, step: Floats, corrections: int
-    ) -> Closed:
+    def _certain(self, arcs: Arcs, made: System, step: Floats, corrections: int) -> Closed:
         """Return arcs that close, with the errors that runs and rounding leave in them.
 
         These are three times what a second method, at a tighter tolerance, would correct,
-        the last correction, and what the condition makes of rounding errors.
+        the last correction, and what the condition makes of rounding errors, at this value of the
+        number that changes.
         """
+        inverse = _inverse(made.jacobian[:, :-1] if self.free else made.jacobian)
         other = self.gaps(arcs, self.ends(arcs, **SECOND_OPINION)[0]).reshape(-1)
         residual = np.zeros(inverse.shape[1])
         residual[: len(other)] = other
@@ -285,7 +288,7 @@ class Shooting:
             rounding[len(other) + 1] = np.finfo(float).eps * parts / slope
         columns = made.columns[: len(inverse)]
         opinion = np.abs(inverse @ residual) + np.linalg.norm(inverse * rounding, axis=1)
-        errors = 3 * columns * opinion + np.abs(step)
+        errors = 3 * columns * opinion + np.abs(step[: len(inverse)])
         closure = float(np.abs(self.gaps(arcs, made.ends)).max())
         tangent = np.linalg.svd(made.jacobian)[2][-1]
         return Closed(arcs, made.transitions, closure, errors, corrections, tangent)
