@@ -72,7 +72,7 @@ def rows_of_connections(found: dict[str, tuple[int, tuple[pc.Connection, ...]]])
     lines = ["| connection | θ, rad | rate of it, rad/s | error, rad | angle, rad |\n"]
     lines.append("|---|--:|--:|--:|--:|\n")
     for name, (link, connections) in found.items():
-        for x in sorted(connections, key=lambda x: (abs(wrapped(x.q)[link]), x.qd[link])):
+        for x in sorted(connections, key=lambda x: (round(abs(wrapped(x.q)[link]), 6), x.qd[link])):
             angle = 0.0 + round(float(wrapped(x.q)[link]), 8)
             told = f"{angle:.8f} | {x.qd[link]:.7f} | {x.error:.0e} | {x.angle:.3f}"
             lines.append(f"| {name} | {told} |\n")

@@ -69,6 +69,11 @@ def test_a_family_that_does_not_come_there_says_how_far_it_came():
     with pytest.raises(RuntimeError, match="5 orbits are all that were asked for") as told:
         small.continued("energy", 0.0, most=5)
     assert len(told.value.orbits) == 5
+    with pytest.raises(RuntimeError, match="it stays there, at a period of") as told:
+        pc.equilibria(ROD)[0].orbit(1).continued("energy", 2 * ROD.gravity)
+    last = told.value.orbits[-1]  # close to the motion that comes to rest upright
+    assert last.energy == pytest.approx(ROD.gravity / 2, rel=1e-5)
+    assert last.energy < ROD.gravity / 2
     with pytest.raises(ValueError, match=r"name = 'gravty': did you mean 'gravity'\?"):
         small.continued("gravty", 1.0)
     fast = pc.periodic_orbit(driven(4.6), *np.split(settled(4.6, np.array([np.pi / 2, 0])), 2))

@@ -7,12 +7,23 @@ from typing import NamedTuple
 import numpy as np
 
 from pendcore.messages import Floats
-from pendcore.orbits.shooting import GROWTH, Arcs, Closed, NotClosedError, Shooting
+from pendcore.orbits.shooting import (
+    GROWTH,
+    MOST_ARCS,
+    Arcs,
+    Closed,
+    NotClosedError,
+    Shooting,
+    tangent_of,
+)
 
 SHORTEST = 1e-6
 """Of the steps that are tried: below it the family is lost."""
 EASY = 5
 """So few corrections that the next step may be longer."""
+STAYS = 10
+"""So many orbits between which the number hardly changes are the end of a family, as where the
+period grows without end."""
 
 
 class Family(NamedTuple):
@@ -30,7 +41,7 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
     """
     here, found = shooting.closed(arcs), list[Closed]()
     onward = np.sign(until - arcs.value)
-    step, ahead = longest / 4, _ends(here.tangent, arcs)
+    step, ahead, stays = longest / 4, _ends(here.tangent, arcs), 0
     if ahead[-1] * onward < 0:
         ahead = -ahead
     while len(found) + 1 < most:
@@ -49,11 +60,16 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
                 return Family(found, str(failure))
             continue
         found.append(there)
+        stays = stays + 1 if abs(there.arcs.value - here.arcs.value) < 1e-6 * shooting.span else 0
+        if stays == STAYS:
+            return Family(found, f"it stays there, at a period of {there.arcs.period:.6g} s")
         ahead = _ends(tangent, here.arcs)
         here = there
-        growth = np.linalg.norm(there.transitions, 2, axis=(1, 2)).max()
-        if growth > 10 * GROWTH and not shooting.period_follows:
-            here = shooting.closed(shooting.cut(there.arcs))
+        if shooting.growth(here.arcs) > 10 * GROWTH and not shooting.period_follows:
+            if 2 * len(there.arcs.states) > MOST_ARCS:
+                return Family(found, f"it takes more than {MOST_ARCS} arcs, so unstable it is")
+            halves = shooting.cut(there.arcs)
+            here = there._replace(arcs=halves, tangent=tangent_of(shooting.system(halves, halves)))
         step = min(longest, 1.5 * step) if there.corrections <= EASY else step
     return Family(found, f"{most} orbits are all that were asked for")
 

@@ -10,9 +10,8 @@ import numpy.typing as npt
 
 from pendcore import Scene, simulate
 from pendcore.messages import Floats, finite_array, numbers, vector, whole_number
-from pendcore.orbits.shooting import GROWTH, TOLERANCES, Arcs, Shooting, velocity
+from pendcore.orbits.shooting import GROWTH, MOST_ARCS, TOLERANCES, Arcs, Shooting, velocity
 
-MOST_ARCS = 64
 _TIMES = np.array([0.0, 0.137, 0.291, 0.418, 0.553, 0.676, 0.811, 0.947])
 """Shares of a period at which it is seen whether anything depends on time."""
 
@@ -44,9 +43,7 @@ def finite_positive(name: str, value: Any, unit: str) -> float:
 def cut_as_it_grows(shooting: Shooting, guess: Arcs, arcs: int | None) -> Arcs:
     """Return guesses at equal times of the motion from the one that is given."""
     if arcs is None:
-        made = shooting.system(guess, guess)
-        growth = np.linalg.norm(made.transitions[0], 2)
-        arcs = min(MOST_ARCS, max(1, ceil(log(growth) / log(GROWTH))))
+        arcs = min(MOST_ARCS, max(1, ceil(log(shooting.growth(guess)) / log(GROWTH))))
     elif whole_number("arcs", arcs) < 1:
         raise ValueError(f"arcs = {arcs}: must be >= 1")
     times = np.linspace(0.0, guess.period, arcs + 1)[:-1]

@@ -9,7 +9,7 @@ import numpy as np
 
 from pendcore import Scene, Solution, events, simulate
 from pendcore.messages import Floats, whole_number
-from pendcore.orbits.shooting import TOLERANCES
+from pendcore.orbits.shooting import TOLERANCES, derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -72,9 +72,8 @@ class Manifold:
             names = [f"{kind}[{i + 1}]" for kind in ("q0", "qd0") for i in range(size // 2)]
             span = (t0, t0 + share * self.period / m)
             sol = simulate(self.scene, span, *np.split(state, 2), sensitivities=names, **TOLERANCES)
-            assert sol.sensitivities is not None
             even = abs(self.multiplier) ** (-share / m)
-            state, along = sol.y[:, -1], even * sol.sensitivities[-1] @ along
+            state, along = sol.y[:, -1], even * derivatives(sol)[-1] @ along
         started: Floats = state + self.offset * along
         return started
 

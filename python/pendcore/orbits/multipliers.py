@@ -31,7 +31,7 @@ def multipliers(shooting: Shooting, arcs: Arcs, transitions: Floats) -> Complexe
     """
     m = len(arcs.states)
     scales = shooting.scales
-    scene, times = shooting.at(arcs.value), arcs.times()
+    scene, times = shooting.at(arcs.value), np.linspace(0.0, arcs.period, m + 1)
     frames = []
     for t, state in zip(times, arcs.states, strict=False):
         known = []

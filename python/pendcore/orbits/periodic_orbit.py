@@ -307,7 +307,7 @@ def periodic_orbit(
         motion from the guess has it.
     arcs : int, optional
         Into how many arcs the orbit is cut. Default: so many that a small change grows by less
-        than 300 in each; m, if guesses at m times are given.
+        than 30 in each; m, if guesses at m times are given.
 
     Returns
     -------
@@ -353,9 +353,9 @@ def periodic_orbit(
     )
     if len(states) == 1:
         guess = cut_as_it_grows(shooting, guess, arcs)
-    ends, _ = shooting.ends(guess)
     if turns is None:
-        turned = np.rint((ends[-1] - guess.states[0])[:n] / (2 * np.pi))
+        end = shooting.runs(guess)[-1].q[-1]
+        turned = np.rint((end - guess.states[0, :n]) / (2 * np.pi))
     else:
         turned = np.array(
             [whole_number("turns", x) for x in np.broadcast_to(turns, n).tolist()], float

@@ -17,21 +17,27 @@ Source: Deuflhard, BIT 24 (1984) 456; Doedel et al., Int. J. Bifurcation Chaos 1
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendcore import Scene, simulate
+from pendcore import Scene, Solution, simulate
 from pendcore.messages import Floats
 
 TOLERANCES: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-16, "store": "end", "on_failure": "raise"}
 SECOND_OPINION: dict[str, Any] = {**TOLERANCES, "method": "dop853", "rtol": 1e-14}
 CORRECTIONS = 25
+CLOSE = 1e-9
+"""rad; what fails to close by more is no orbit."""
 LONGEST = 0.3
 """The largest change of an angle, rad, or of the period, as a share of it, in a step."""
-GROWTH = 300.0
+SHORTEST = 1e-4
+"""The least share of a step that is tried."""
+GROWTH = 30.0
 """By how much a change of the state may grow in an arc before the arc is cut in two."""
+MOST_ARCS = 64
 _STENCIL = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0.0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
 _WIDTH = 0.05
 """Central differences of order 8: exact for energies, to rounding."""
@@ -43,10 +49,6 @@ class Arcs(NamedTuple):
     states: Floats  # (m, 2n)
     period: float  # s
     value: float = 0.0
-
-    def times(self) -> Floats:
-        """When the arcs begin, and the end, s, (m + 1,)."""
-        return np.linspace(0.0, self.period, len(self.states) + 1)
 
 
 class System(NamedTuple):
@@ -80,6 +82,12 @@ def velocity(scene: Scene, t: float, state: Floats) -> Floats:
     return np.concatenate([qd, scene.accelerations(t, q, qd)])
 
 
+def derivatives(run: Solution) -> Floats:
+    """The derivatives that were asked for, (n_t, 2n, k)."""
+    assert run.sensitivities is not None
+    return run.sensitivities
+
+
 def total_energy(scene: Scene, states: Floats) -> Floats:
     """J, (...), of states (..., 2n)."""
     kinetic, potential = scene.energy(0.0, *np.split(states, 2, axis=-1))
@@ -91,6 +99,12 @@ def energy_gradient(scene: Scene, state: Floats) -> Floats:
     moves = _WIDTH * np.arange(-4, 5)[:, np.newaxis, np.newaxis] * np.eye(len(state))
     gradient: Floats = _STENCIL @ total_energy(scene, state + moves) / _WIDTH
     return gradient
+
+
+def tangent_of(made: System) -> Floats:
+    """Return the direction along which the equations go on to hold."""
+    tangent: Floats = np.linalg.svd(made.jacobian)[2][-1]
+    return tangent
 
 
 def _inverse(jacobian: Floats) -> Floats:
@@ -137,17 +151,26 @@ class Shooting:
         """Units of angles and rates, (2n,)."""
         return np.repeat([1.0, self.unit], len(self.turns))
 
-    def ends(self, arcs: Arcs, **asked: Any) -> tuple[Floats, Floats | None]:
-        """Return where the arcs end, (m, 2n), and the derivatives that are asked for."""
-        scene, times = self.at(arcs.value), arcs.times()
-        ends, derivatives = [], []
-        for start, t0, t1 in zip(arcs.states, times[:-1], times[1:], strict=True):
-            span = (t0, t1) if self.is_forced else (0.0, t1 - t0)
-            sol = simulate(scene, span, *np.split(start, 2), **{**TOLERANCES, **asked})
-            ends.append(sol.y[:, -1])
-            if sol.sensitivities is not None:
-                derivatives.append(sol.sensitivities[-1])
-        return np.array(ends), np.array(derivatives) if derivatives else None
+    @property
+    def names(self) -> list[str]:
+        """The start's names, as `simulate(sensitivities=...)` takes them."""
+        return [f"{kind}[{i + 1}]" for kind in ("q0", "qd0") for i in range(len(self.turns))]
+
+    def runs(self, arcs: Arcs, **asked: Any) -> list[Solution]:
+        """Simulate each arc."""
+        spans = pairwise(np.linspace(0.0, arcs.period, len(arcs.states) + 1))
+        return [
+            simulate(self.at(arcs.value), span, *np.split(start, 2), **{**TOLERANCES, **asked})
+            for start, span in zip(arcs.states, spans, strict=True)
+        ]
+
+    def growth(self, arcs: Arcs) -> float:
+        """Return by how much a change of the state grows in an arc, at most and at any time."""
+        found = [
+            derivatives(run) * self.scales / self.scales[:, np.newaxis]
+            for run in self.runs(arcs, sensitivities=self.names, store="steps")
+        ]
+        return max(float(np.linalg.norm(one, 2, axis=(1, 2)).max()) for one in found)
 
     def gaps(self, arcs: Arcs, ends: Floats) -> Floats:
         """How far each arc ends from where the next begins, (m, 2n), in rad."""
@@ -159,11 +182,10 @@ class Shooting:
     def system(self, arcs: Arcs, about: Arcs) -> System:
         """Return the equations at these arcs, the phase being that of ``about``."""
         m, size = arcs.states.shape
-        n = size // 2
-        names = [f"{kind}[{i + 1}]" for kind in ("q0", "qd0") for i in range(n)]
         by_parameter = self.free not in ("", "energy")
-        ends, found = self.ends(arcs, sensitivities=names + [self.free] * by_parameter)
-        assert found is not None
+        runs = self.runs(arcs, sensitivities=self.names + [self.free] * by_parameter)
+        ends = np.array([run.y[:, -1] for run in runs])
+        found = np.array([derivatives(run)[-1] for run in runs])
         scene, transitions = self.at(arcs.value), found[:, :, :size]
         jacobian = np.zeros((m, size, m, size))
         for k in range(m):
@@ -236,32 +258,38 @@ class Shooting:
             With what was reached.
         """
         arcs, before = guess, inf
+        made, jacobian, residual = self._equations(arcs, guess, tangent)
         for k in range(CORRECTIONS):
-            made = self.system(arcs, guess if tangent is not None else arcs)
-            jacobian, residual = made.jacobian, made.residual
-            if tangent is not None:
-                away = self._difference(arcs, guess) / made.columns
-                jacobian = np.vstack([jacobian, tangent])
-                residual = np.append(residual, tangent @ away)
-            elif self.free:
-                jacobian = jacobian[:, :-1]
-            step = -_inverse(jacobian) @ residual
+            inverse = _inverse(jacobian)
+            step, gap = -inverse @ residual, np.abs(made.residual).max()
             size = float(np.abs(step).max())
-            if not np.isfinite(size):
-                break
             unknowns: Floats = step * made.columns[: len(step)]
-            if size < 1e-14 or (size < 1e-7 and size > before / 4):
+            if gap < CLOSE and (size < 1e-14 or (size < 1e-7 and size > before / 4)):
                 return self._certain(arcs, made, unknowns, k)
             if self.free and tangent is None:
                 unknowns = np.append(unknowns, 0.0)
-            arcs = self.moved(arcs, unknowns * min(1.0, LONGEST / size))
-            if not arcs.period > 0:
+            share, before = min(1.0, LONGEST / size), size
+            while share > SHORTEST:  # the next step may hardly be longer: Deuflhard's natural test
+                there = self.moved(arcs, unknowns * share)
+                if there.period > 0:
+                    made, jacobian, residual = self._equations(there, guess, tangent)
+                    if size < 1e-6 or np.abs(inverse @ residual).max() < size:
+                        break
+                share /= 2
+            else:
                 break
-            before = size
-        raise NotClosedError(
-            f"after {k + 1} corrections it still fails to close by "
-            f"{np.abs(made.residual).max():.3g} rad"
-        )
+            arcs = there
+        raise NotClosedError(f"after {k + 1} corrections it still fails to close by {gap:.3g} rad")
+
+    def _equations(
+        self, arcs: Arcs, guess: Arcs, tangent: Floats | None
+    ) -> tuple[System, Floats, Floats]:
+        """Return what is to be solved, with or without the plane normal to a tangent."""
+        made = self.system(arcs, arcs if tangent is None else guess)
+        if tangent is None:
+            return made, made.jacobian[:, :-1] if self.free else made.jacobian, made.residual
+        away = tangent @ (self._difference(arcs, guess) / made.columns)
+        return made, np.vstack([made.jacobian, tangent]), np.append(made.residual, away)
 
     def _difference(self, one: Arcs, other: Arcs) -> Floats:
         rest = [] if self.is_forced else [one.period - other.period]
@@ -276,7 +304,8 @@ class Shooting:
         number that changes.
         """
         inverse = _inverse(made.jacobian[:, :-1] if self.free else made.jacobian)
-        other = self.gaps(arcs, self.ends(arcs, **SECOND_OPINION)[0]).reshape(-1)
+        ends = np.array([run.y[:, -1] for run in self.runs(arcs, **SECOND_OPINION)])
+        other = self.gaps(arcs, ends).reshape(-1)
         residual = np.zeros(inverse.shape[1])
         residual[: len(other)] = other
         largest = np.abs(np.vstack([arcs.states, made.ends]) / self.scales).max()
@@ -290,11 +319,10 @@ class Shooting:
         opinion = np.abs(inverse @ residual) + np.linalg.norm(inverse * rounding, axis=1)
         errors = 3 * columns * opinion + np.abs(step[: len(inverse)])
         closure = float(np.abs(self.gaps(arcs, made.ends)).max())
-        tangent = np.linalg.svd(made.jacobian)[2][-1]
-        return Closed(arcs, made.transitions, closure, errors, corrections, tangent)
+        return Closed(arcs, made.transitions, closure, errors, corrections, tangent_of(made))
 
     def cut(self, arcs: Arcs) -> Arcs:
         """Return the arcs, each cut in two."""
-        halves = Arcs(np.repeat(arcs.states, 2, axis=0), arcs.period, arcs.value)
-        halves.states[1::2] = self.ends(halves)[0][::2]
+        halves = arcs._replace(states=np.repeat(arcs.states, 2, axis=0))
+        halves.states[1::2] = [run.y[:, -1] for run in self.runs(halves)[::2]]
         return halves
