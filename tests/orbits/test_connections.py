@@ -115,7 +115,11 @@ def test_homoclinic_connections_are_those_of_the_paper(which, energy, side, sect
     for low, high in np.array(windows):
         inside = (points > low - 1e-6) & (points < high + 1e-6)
         assert np.count_nonzero(inside.all(axis=1)) == 1, (low, high)
-    for x in found:
+    # Mirrored, and backward in time, each is one of them again; its bar must know.
+    for x, (angle, rate) in zip(found, points, strict=True):
+        off = np.abs(points - [-angle, rate]) / [1, 2 * np.pi / one.period]
+        twin = off.max(axis=1).argmin()
+        assert off[twin].max() <= x.error + found[twin].error
         assert x.gap < 1e-9
         assert x.error < 2e-9
         assert x.angle > 0.1
@@ -124,6 +128,23 @@ def test_homoclinic_connections_are_those_of_the_paper(which, energy, side, sect
         t, y = x.motion()
         assert (np.diff(t) > 0).all()
         assert np.abs(np.diff(y[:, :2], axis=0)).max() < 0.3
+
+
+def test_a_connection_that_begins_farther_off_is_as_far_off_as_it_says():
+    one, until = orbit(1), SECTIONS["hanging 2"]
+    found = [
+        pc.connections(
+            one.manifold("unstable", 1, until=until, offset=offset),
+            one.manifold("stable", -1, until=until, offset=offset),
+            count=400,
+        )
+        for offset in (2e-3, 4e-5)
+    ]
+    assert len(found[0]) == len(found[1])
+    for x in found[0]:
+        apart = [np.abs([*(x.q - y.q), *(x.qd - y.qd)]) / [1, 1, 6.6, 6.6] for y in found[1]]
+        off = min(one.max() for one in apart)
+        assert 1e-9 < off < x.error < 1e-5
 
 
 def test_a_heteroclinic_connection_is_one_motion_from_orbit_to_orbit():

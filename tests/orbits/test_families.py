@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import mpmath
 import numpy as np
 import pendcore as pc
@@ -48,10 +50,14 @@ def settled(frequency, start):
     return pc.simulate(driven(frequency), span, *np.split(start, 2), store="end").y[:, -1]
 
 
-def test_a_resonance_curve_turns_back_twice_and_runs_settle_on_its_stable_parts():
-    name = "effect[1].sinusoid.angular_frequency"
+@cache
+def resonance():
     fast = pc.periodic_orbit(driven(4.6), *np.split(settled(4.6, np.array([np.pi / 2, 0])), 2))
-    family = fast.continued(name, 2.6, step=0.05)
+    return fast.continued("effect[1].sinusoid.angular_frequency", 2.6, step=0.05)
+
+
+def test_a_resonance_curve_turns_back_twice_and_runs_settle_on_its_stable_parts():
+    family = resonance()
     frequencies = np.array([2 * np.pi / one.period for one in family])
     steps = np.sign(np.diff(frequencies))
     assert np.count_nonzero(np.diff(steps)) == 2  # two folds
@@ -62,6 +68,19 @@ def test_a_resonance_curve_turns_back_twice_and_runs_settle_on_its_stable_parts(
         again = settled(w, np.array([*one.q0 + 1e-3, *one.qd0]))
         away = np.abs(again - [*one.q0, *one.qd0]).max()
         assert (away < 1e-4) == one.is_stable, (w, away)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3, 0.7])
+def test_the_manifolds_of_a_driven_saddle_grow_by_its_multipliers(phase):
+    """The drive goes on: a motion of a phase begins at that phase's time."""
+    one = [x for x in resonance() if not x.is_stable][5]
+    times = [phase * one.period]
+    on_orbit = one.solution(rtol=1e-13, t_eval=times).y[:, 0]
+    for stability, factor in (("unstable", max), ("stable", min)):
+        run = one.manifold(stability, duration=one.period, offset=1e-6).run(phase)
+        growth = (run.y[:, -1] - on_orbit) / (run.y[:, 0] - on_orbit)
+        grown = factor(one.multipliers.real)
+        np.testing.assert_allclose(growth, max(grown, 1 / grown), rtol=1e-4)
 
 
 def test_a_family_that_does_not_come_there_says_how_far_it_came():

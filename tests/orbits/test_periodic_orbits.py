@@ -251,6 +251,8 @@ def test_bad_input_and_what_is_not_found_are_told():
         RuntimeError, match=r"after 25 corrections it still fails to close by .* rad"
     ):
         pc.periodic_orbit(TEXTBOOK, [0.5, 0.2], [3.0, -4.0], 1.1)
+    with pytest.raises(RuntimeError, match=r"still fails to close by .*e-0[89] rad"):
+        pc.periodic_orbit(ROD, [-np.pi / 2 + 1e-5], arcs=1)
     with pytest.raises(RuntimeError, match="came to the equilibrium"):
         pc.periodic_orbit(TEXTBOOK, np.pi / 2 + 1e-9, period=1.7, energy=-2 * TEXTBOOK.gravity)
     push = E.Sinusoid(amplitude=1.0, angular_frequency=3.0)

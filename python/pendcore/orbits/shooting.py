@@ -33,8 +33,6 @@ CLOSE = 1e-9
 """rad; what fails to close by more is no orbit."""
 LONGEST = 0.3
 """The largest change of an angle, rad, or of the period, as a share of it, in a step."""
-SHORTEST = 1e-4
-"""The least share of a step that is tried."""
 GROWTH = 30.0
 """By how much a change of the state may grow in an arc before the arc is cut in two."""
 MOST_ARCS = 64
@@ -258,38 +256,23 @@ class Shooting:
             With what was reached.
         """
         arcs, before = guess, inf
-        made, jacobian, residual = self._equations(arcs, guess, tangent)
         for k in range(CORRECTIONS):
-            inverse = _inverse(jacobian)
-            step, gap = -inverse @ residual, np.abs(made.residual).max()
+            made = self.system(arcs, arcs if tangent is None else guess)
+            jacobian, residual = made.jacobian, made.residual
+            if tangent is not None:
+                away = tangent @ (self._difference(arcs, guess) / made.columns)
+                jacobian, residual = np.vstack([jacobian, tangent]), np.append(residual, away)
+            elif self.free:
+                jacobian = jacobian[:, :-1]
+            step, gap = -_inverse(jacobian) @ residual, np.abs(made.residual).max()
             size = float(np.abs(step).max())
             unknowns: Floats = step * made.columns[: len(step)]
             if gap < CLOSE and (size < 1e-14 or (size < 1e-7 and size > before / 4)):
                 return self._certain(arcs, made, unknowns, k)
             if self.free and tangent is None:
                 unknowns = np.append(unknowns, 0.0)
-            share, before = min(1.0, LONGEST / size), size
-            while share > SHORTEST:  # the next step may hardly be longer: Deuflhard's natural test
-                there = self.moved(arcs, unknowns * share)
-                if there.period > 0:
-                    made, jacobian, residual = self._equations(there, guess, tangent)
-                    if size < 1e-6 or np.abs(inverse @ residual).max() < size:
-                        break
-                share /= 2
-            else:
-                break
-            arcs = there
+            arcs, before = self.moved(arcs, unknowns * LONGEST / max(size, LONGEST)), size
         raise NotClosedError(f"after {k + 1} corrections it still fails to close by {gap:.3g} rad")
-
-    def _equations(
-        self, arcs: Arcs, guess: Arcs, tangent: Floats | None
-    ) -> tuple[System, Floats, Floats]:
-        """Return what is to be solved, with or without the plane normal to a tangent."""
-        made = self.system(arcs, arcs if tangent is None else guess)
-        if tangent is None:
-            return made, made.jacobian[:, :-1] if self.free else made.jacobian, made.residual
-        away = tangent @ (self._difference(arcs, guess) / made.columns)
-        return made, np.vstack([made.jacobian, tangent]), np.append(made.residual, away)
 
     def _difference(self, one: Arcs, other: Arcs) -> Floats:
         rest = [] if self.is_forced else [one.period - other.period]
