@@ -177,5 +177,8 @@ def test_manifolds_that_cannot_meet_or_do_not_exist_are_refused():
     small = pc.equilibria(SCENE)[1].orbit(1).manifold("stable")
     with pytest.raises(ValueError, match=r"energies 0\.2, -0\.175.* J: must agree"):
         pc.connections(tube, small)
+    turning = pc.periodic_orbit(SCENE, [DOWN, -DOWN], [-9.656, -20.515], energy=0.2)
+    with pytest.raises(ValueError, match=r"multiplier -2\.57.* has one side"):
+        pc.connections(turning.manifold("unstable"), turning.manifold("stable"))
     with pytest.raises(ValueError, match="an unstable manifold, and then a stable one"):
         pc.connections(small, tube)

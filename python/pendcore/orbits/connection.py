@@ -109,7 +109,8 @@ def connections(
     Raises
     ------
     ValueError
-        If the manifolds have no section, or are not of two links and one energy.
+        If the manifolds have no section, are not of two links and one energy, or turn over in each
+        period, as those of negative multipliers do.
 
     Examples
     --------
@@ -137,6 +138,10 @@ def _check(unstable: Manifold, stable: Manifold) -> None:
     for one in (unstable, stable):
         if len(one.scene.links) != 2 or one.is_forced:
             raise ValueError("connections: must be of two links that nothing drives")
+        if one.multiplier < 0:
+            raise ValueError(
+                f"connections: a manifold of multiplier {one.multiplier:.6g} has one side"
+            )
     energies = [float(total_energy(one.scene, one.arcs[0])) for one in (unstable, stable)]
     if abs(energies[0] - energies[1]) > 1e-8 * (1 + abs(energies[0])):
         raise ValueError(
