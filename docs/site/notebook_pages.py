@@ -16,7 +16,7 @@ INTRODUCTION = (
 )
 
 
-ORDER = ("textbook_swing", "chaos_and_trust", "friction_and_stops")
+ORDER = ("textbook_swing", "chaos_and_trust", "friction_and_stops", "saddle_transport")
 
 
 def write(notebooks: Path, folder: Path) -> None:

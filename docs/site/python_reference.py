@@ -29,6 +29,10 @@ GROUPS = {
         "Accuracy", "AccuracyError", "ErrorEstimate", "Defect", "LyapunovExponents", "lyapunov",
         "HorizonWork", "horizon_work", "AccuracyCost", "accuracy_cost",
     ],
+    "Equilibria and periodic orbits": [
+        "equilibria", "Equilibrium", "periodic_orbit", "PeriodicOrbit", "Manifold", "connections",
+        "Connection",
+    ],
     "Energies and forces": ["Energy", "Ledger", "LargestReaction"],
     "Cases and files": ["Case", "read_case", "load"],
     "Angles": ["angles_from_vertical", "angles_to_vertical"],

@@ -59,21 +59,32 @@ if TYPE_CHECKING:
     from pendcore.cost.horizon_work import HorizonWork
     from pendcore.cost.sweep import accuracy_cost
     from pendcore.explanation.explanation import Explanation
+    from pendcore.orbits.connection import Connection, connections
+    from pendcore.orbits.equilibrium import Equilibrium, equilibria
+    from pendcore.orbits.manifold import Manifold
+    from pendcore.orbits.periodic_orbit import PeriodicOrbit, periodic_orbit
 
 _WHEN_ASKED_FOR = {
     "AccuracyCost": "pendcore.cost.accuracy_cost",
+    "Connection": "pendcore.orbits.connection",
     "Defect": "pendcore._accuracy.defect",
     "Ensemble": "pendcore._ensemble.ensemble",
+    "Equilibrium": "pendcore.orbits.equilibrium",
     "Explanation": "pendcore.explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
     "Linearization": "pendcore._scene.linearization",
     "LyapunovExponents": "pendcore._horizon.lyapunov",
+    "Manifold": "pendcore.orbits.manifold",
+    "PeriodicOrbit": "pendcore.orbits.periodic_orbit",
     "accuracy_cost": "pendcore.cost.sweep",
+    "connections": "pendcore.orbits.connection",
     "derive": "pendcore.derive",  # SymPy is an extra, and takes its time
     "ensemble": "pendcore._api.ensemble",
+    "equilibria": "pendcore.orbits.equilibrium",
     "horizon_work": "pendcore.cost.horizon",
     "load": "pendcore._api.files",
     "lyapunov": "pendcore._horizon.lyapunov",
+    "periodic_orbit": "pendcore.orbits.periodic_orbit",
     "read_case": "pendcore._api.files",
     "reducers": "pendcore.reducers",
     "sampling": "pendcore.sampling",
@@ -99,9 +110,11 @@ __all__ = [
     "AccuracyCost",
     "AccuracyError",
     "Case",
+    "Connection",
     "Defect",
     "Energy",
     "Ensemble",
+    "Equilibrium",
     "ErrorEstimate",
     "Explanation",
     "HorizonWork",
@@ -110,8 +123,10 @@ __all__ = [
     "Linearization",
     "Link",
     "LyapunovExponents",
+    "Manifold",
     "Mobility",
     "PendcoreWarning",
+    "PeriodicOrbit",
     "RunError",
     "Scene",
     "Solution",
@@ -120,12 +135,15 @@ __all__ = [
     "accuracy_cost",
     "angles_from_vertical",
     "angles_to_vertical",
+    "connections",
     "effects",
     "ensemble",
+    "equilibria",
     "events",
     "horizon_work",
     "load",
     "lyapunov",
+    "periodic_orbit",
     "read_case",
     "reducers",
     "sampling",

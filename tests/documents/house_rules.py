@@ -73,6 +73,7 @@ PYTHON_LAYERS = [
     "page",
     "cost",
     "derive",
+    "orbits",
     "cli",
 ]
 LAYER_OF_PUBLIC_MODULE = {

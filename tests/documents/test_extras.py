@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-EXTRAS = ["plotting", "explanation", "page", "cost", "derive", "cli"]
+EXTRAS = ["plotting", "explanation", "page", "cost", "derive", "orbits", "cli"]
 PROGRAM = """
 import importlib, pkgutil, sys
 import pendcore

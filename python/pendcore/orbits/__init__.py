@@ -1,0 +1,1 @@
+"""Equilibria, periodic orbits, their families, their manifolds and the motions between them."""
