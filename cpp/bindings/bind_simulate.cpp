@@ -22,7 +22,7 @@ std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0,
   // As a pointer, None takes pybind11 a microsecond: it looks for a foreign class first.
   if (!watch.is_none()) {
     auto& keeping = watch.cast<KeepingWatch&>();
-    keeping.keep(options.store.value_or(usual_store(options)), options.t_eval);
+    keeping.keep(options.store.value_or(usual_store(options)), options);
     options.watch = &keeping;
   }
   const Start start = start_of(scene, q0, qd0, t0, t_end, warn);

@@ -129,9 +129,9 @@ void DefectCorrection::add(const Scene& scene, const std::vector<double>& q0,
   if (!scratch_) scratch_ = std::make_unique<Scratch>(n);
 }
 
-void DefectCorrection::keep(Store store, const std::vector<double>& t_eval) {
+void DefectCorrection::keep(Store store, const Options& options) {
   store_ = store;
-  t_eval_ = t_eval;
+  t_eval_ = options.t_eval;
 }
 
 void DefectCorrection::starts(double t, std::span<const double> y) {

@@ -74,7 +74,7 @@ class DefectCorrection final : public KeepingWatch {
   void add(const Scene& scene, const std::vector<double>& q0, std::span<const int> points);
   /// Keeps errors where a run keeps its states: at t_eval, at the steps, or at the end; of a run
   /// with dense output at six times in each step.
-  void keep(Store store, const std::vector<double>& t_eval) override;
+  void keep(Store store, const Options& options) override;
 
   bool asks_for_dense_output() const override { return true; }
   void starts(double t, std::span<const double> y) override;

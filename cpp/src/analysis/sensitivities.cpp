@@ -15,6 +15,9 @@ namespace pendcore {
 namespace {
 
 constexpr int most_halvings_of_step = 44;
+/// The error that a step may add, as a share: a hundredth of what the run may, between these.
+constexpr double least_tolerance = 1e-14;
+constexpr double most_tolerance = 1e-10;
 
 }  // namespace
 
@@ -29,9 +32,12 @@ struct Sensitivities::Variation {
   bool has_converged(double h);
   void advance(const WatchedStep& step, double from, double to, int halvings);
   int padded_names() const { return static_cast<int>((now.cols() + 3) / 4 * 4); }
-  /// Whether the next time that is kept lies in a step.
-  bool is_due(const WatchedStep& step) const {
-    return next_time < t_eval.size() && (t_eval[next_time] - step.t) * step.h <= 0.0;
+  /// The share of a step at which the next time that is kept lies; infinite beyond the step.
+  double next_share(const WatchedStep& step) const {
+    const bool is_due = keeps_times && next_time < t_eval.size() &&
+                        (t_eval[next_time] - step.t) * step.h <= 0.0;
+    if (!is_due) return std::numeric_limits<double>::infinity();
+    return t_eval[next_time] == step.t ? step.share : (t_eval[next_time] - t_start) / step.h;
   }
   void keep(double t);
   void take_back_last() { values.resize(values.size() - static_cast<std::size_t>(now.size())); }
@@ -41,6 +47,7 @@ struct Sensitivities::Variation {
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
   double t_start = 0.0;
+  double tolerance = least_tolerance;
 
   // Of the part of a step that is under way.
   int points_at_once = 8;
@@ -76,8 +83,6 @@ void Sensitivities::Variation::refuse_from(double t, const std::string& why) {
 /// alone. Where they fall like a geometric series, the error at the end of the step is of the order
 /// of their square. At a kink they do not. Notes whether fewer points would have done.
 bool Sensitivities::Variation::has_converged(double h) {
-  constexpr double rounding = 1e-14;
-  constexpr double square_root_of_rounding = 3e-8;
   constexpr double fewer = 1e-3;  // a point less leaves larger last coefficients
   has_points_to_spare = true;
   const int width = padded_names();
@@ -87,7 +92,7 @@ bool Sensitivities::Variation::has_converged(double h) {
     if (!std::isfinite(largest)) return false;
     const double size = now.col(k).cwiseAbs().maxCoeff() + std::abs(h) * largest;
     const bool falls = last * largest <= 10.0 * middle * middle;
-    const double allowed = (falls ? square_root_of_rounding : rounding) * size;
+    const double allowed = (falls ? 0.3 * std::sqrt(tolerance) : tolerance) * size;
     if (std::abs(h) * last > allowed) return false;
     has_points_to_spare &= falls && std::abs(h) * last <= fewer * allowed;
   }
@@ -177,11 +182,10 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
   // A time that is kept is the end of a part: there, the order is highest.
   double from = 0.0;
-  for (; keeps_times && is_due(step); ++next_time) {
-    const double t = t_eval[next_time];
-    const double to = t == step.t ? step.share : (t - t_start) / step.h;
+  for (; std::isfinite(next_share(step)); ++next_time) {
+    const double to = next_share(step);
     if (!is_over) advance(step, from, to, 0);
-    keep(t);
+    keep(t_eval[next_time]);
     from = to;
   }
   if (from != step.share && !is_over) advance(step, from, step.share, 0);
@@ -216,10 +220,13 @@ Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>&
 Sensitivities::~Sensitivities() = default;
 Sensitivities::Sensitivities(Sensitivities&&) noexcept = default;
 
-void Sensitivities::keep(Store store, const std::vector<double>& t_eval) {
+void Sensitivities::keep(Store store, const Options& options) {
   variation_->keeps_end = store == Store::end;
-  variation_->keeps_times = store == Store::times || (store == Store::dense && !t_eval.empty());
-  variation_->t_eval = t_eval;
+  variation_->keeps_times =
+      store == Store::times || (store == Store::dense && !options.t_eval.empty());
+  variation_->t_eval = options.t_eval;
+  const double rtol = options.step ? 0.0 : *std::ranges::min_element(options.rtol);
+  variation_->tolerance = std::clamp(0.01 * rtol, least_tolerance, most_tolerance);
 }
 
 void Sensitivities::starts(double t, std::span<const double> y) { variation_->start(t, y); }

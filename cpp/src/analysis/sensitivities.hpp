@@ -32,7 +32,7 @@ class Sensitivities final : public KeepingWatch {
   ~Sensitivities() override;
   Sensitivities(Sensitivities&&) noexcept;
 
-  void keep(Store store, const std::vector<double>& t_eval) override;
+  void keep(Store store, const Options& options) override;
   bool asks_for_dense_output() const override { return true; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;

@@ -48,7 +48,8 @@ class StepWatch {
 /// A watch that keeps something where the run keeps its states.
 class KeepingWatch : public StepWatch {
  public:
-  virtual void keep(Store store, const std::vector<double>& t_eval) = 0;
+  /// Is told how the run is made; `store` is what it keeps.
+  virtual void keep(Store store, const Options& options) = 0;
 };
 
 }  // namespace pendcore
