@@ -6,12 +6,11 @@ import argparse
 import shutil
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pendcore
 from pendcore import Case
-from pendcore.cli.arguments import case_of, folder_of
+from pendcore.cli.arguments import add_case, add_flags, add_out, case_of, folder_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 from pendcore.messages import whole_file
@@ -39,23 +38,11 @@ FORMS = ("text", "latex", "octave", "inline", "python", "cpp", "report")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    parser.add_argument(
-        "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's"
-    )
+    add_case(parser)
     parser.add_argument("--to", choices=FORMS, default="text", help="default: %(default)s")
-    parser.add_argument(
-        "-o",
-        "--out",
-        type=Path,
-        metavar="PATH",
-        help="the file to write, default: print the text; for a report the folder, default: out/ "
-        "and the case's name",
-    )
-    parser.add_argument(
-        "--worksheet",
-        action="store_true",
-        help="write a worksheet beside the report: the same with blanks",
-    )
+    told = "the file to write, default: print the text; for a report the folder, default: out/ and "
+    add_out(parser, "PATH", f"{told}the case's name")
+    add_flags(parser, worksheet="write a worksheet beside the report: the same with blanks")
 
 
 def execute(args: argparse.Namespace) -> int:

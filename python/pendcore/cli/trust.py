@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.arguments import add_case_or_solution, solution_of
+from pendcore.cli.arguments import add_case_or_solution, add_flags, add_number, solution_of
 from pendcore.cli.horizon import horizon_of
 from pendcore.cli.usage import UsageError, blamed_on_usage
 from pendcore.explanation.solution_text import LIMIT
@@ -31,17 +31,10 @@ example:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
-    parser.add_argument(
-        "--limit",
-        type=float,
-        default=LIMIT,
-        metavar="RAD",
-        help=f"error of an angle up to which a run counts as right; default: {LIMIT} rad",
-    )
-    parser.add_argument(
-        "--time-limit", type=float, metavar="S", help="seconds of computing for the second runs"
-    )
-    parser.add_argument("--json", action="store_true", help="print the same as JSON")
+    told = "error of an angle up to which a run counts as right"
+    add_number(parser, "--limit", "RAD", told, LIMIT)
+    add_number(parser, "--time-limit", "S", "seconds of computing for the second runs")
+    add_flags(parser, json="print the same as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
