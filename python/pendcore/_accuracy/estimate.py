@@ -249,7 +249,6 @@ def _legs(
     count = int(np.clip(solution.stats.accepted / STEPS_A_LEG, 1, LEGS))
     times = second_times(solution)
     ends = np.linspace(start.t_start, start.t_end, count + 1)[1:]
-    ends[-1] = start.t_end
     parts = [None] * count if times is None else np.array_split(times, count)
     second: Solution | None = None
     for done, (end, part) in enumerate(zip(ends, parts, strict=True)):

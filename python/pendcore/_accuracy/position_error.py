@@ -21,9 +21,9 @@ low degree."""
 
 def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
     """Return evenly spaced times of a run, s, (points,): both ends to the last bit, none twice."""
-    times = np.linspace(t_start, t_end, points)
-    times[-1] = t_end
-    return _distinct(times)  # a span of a few last bits has fewer times than points
+    return _distinct(
+        np.linspace(t_start, t_end, points)
+    )  # a span of a few last bits has fewer times than points
 
 
 def kept_times(solution: Solution) -> Floats:

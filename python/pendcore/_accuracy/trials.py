@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from pendcore._accuracy import tuning
 from pendcore._accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
@@ -25,7 +26,6 @@ from pendcore._accuracy.method_choice import (
     same_or_other,
 )
 from pendcore._accuracy.rounding import moved
-from pendcore._accuracy.tuning import COMPENSATED_BELOW, FEW, FIRST_COUNTS_AS, FOR_BOTH, MOST_STEPS
 from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
 from pendcore._messages.warning import warn
@@ -136,7 +136,7 @@ class Trials:
     @property
     def keeps_few_times(self) -> bool:
         store, t_eval = self.options["store"], self.options["t_eval"]
-        few = t_eval is not None and np.size(t_eval) < FEW
+        few = t_eval is not None and np.size(t_eval) < tuning.FEW
         return store == "end" or (few and store != "dense")
 
     def any_effect(self, has: Callable[[Description], bool]) -> bool:
@@ -152,7 +152,7 @@ class Trials:
         """Return the method that typically takes the least work to reach an error and verify it."""
         if self.is_stiff:
             return implicit_method()
-        return pair_of(self.strategy.method or cheapest(self.start, scale / FOR_BOTH))
+        return pair_of(self.strategy.method or cheapest(self.start, scale / tuning.FOR_BOTH))
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Make a run with all the options that the user gave."""
@@ -274,7 +274,9 @@ class Trials:
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
-        enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, FIRST_COUNTS_AS)
+        enough = tuning.MOST_STEPS * max(
+            self.trials[0].solution.stats.accepted, tuning.FIRST_COUNTS_AS
+        )
         return min(times * int(self.options["max_steps"]), enough)
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
@@ -301,7 +303,7 @@ class Trials:
         correction: DefectCorrection | None = None,
     ) -> TrialRun:
         is_second = start.scene is not self.start.scene
-        compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
+        compensated = is_second or self.compensated or rtol < tuning.COMPENSATED_BELOW
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),

@@ -13,20 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import pendcore as pc
+from pendcore import methods
 from pendcore.cost.runs import Start
 from pendcore.messages import Floats
-from pendcore.methods import (
-    TIGHTEST,
-    TIGHTEST_IMPLICIT,
-    implicit_method,
-    known_methods,
-    most_accurate,
-    pair_of,
-)
 from pendcore.options import atol_beside
 
 # In a stiff scene an implicit method comes first.
-REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
+REFEREES_IF_STIFF = (methods.implicit_method(), "dop853", methods.pair_of("dopri5"))
 TOO_UNCERTAIN = 1e-6
 """The uncertainty beyond which the span is cut to where both methods agree to `KNOWN`."""
 KNOWN = 1e-8
@@ -91,7 +84,7 @@ def reference(
     times = _grid(start.t_start, start.t_end, points)
     runs: list[pc.Solution] = []
     until = monotonic() + time_limit
-    for method in REFEREES_IF_STIFF if stiff else most_accurate():
+    for method in REFEREES_IF_STIFF if stiff else methods.most_accurate():
         if not start.is_supported_by(method):
             continue
         rtol = tightest_rtol(method)
@@ -124,7 +117,6 @@ def known_until(found: Reference) -> int:
 def _grid(t_start: float, t_end: float, points: int) -> Floats:
     """Return evenly spaced times, s: both ends to the last bit, none twice."""
     times = np.linspace(t_start, t_end, points)
-    times[-1] = t_end
     distinct: Floats = times[np.append(True, np.diff(times) != 0)]
     return distinct  # a span of a few last bits has fewer times than points
 
@@ -142,10 +134,14 @@ def _text(solution: pc.Solution) -> str:
 
 def methods_of(method: str) -> set[str]:
     """Return a method's name and, for a pair, the names of its two methods."""
-    known = known_methods()[method]
+    known = methods.known_methods()[method]
     return {method, known["first"], known["second"]} - {""}
 
 
 def tightest_rtol(method: str) -> float:
     """Return the rtol below which a run by a method gets no more accurate."""
-    return TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST
+    return (
+        methods.TIGHTEST_IMPLICIT
+        if methods.implicit_method() in methods_of(method)
+        else methods.TIGHTEST
+    )
