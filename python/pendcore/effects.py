@@ -254,10 +254,6 @@ def __getattr__(name: str) -> NoReturn:
     raise AttributeError(f"pendcore.effects has no {name!r}: {did_you_mean(name, __all__)}")
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "PD",
     "CompiledUser",
@@ -280,3 +276,4 @@ __all__ = [
     "kinds",
     "parts",
 ]
+__dir__ = __all__.copy

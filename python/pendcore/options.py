@@ -192,10 +192,6 @@ def _documented(options: list[RunOption], margin: str) -> Iterator[str]:
                 yield fill(text, 100, initial_indent=inner, subsequent_indent=inner)
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "OPTIONS",
     "RUN_DEFAULTS",
@@ -206,3 +202,4 @@ __all__ = [
     "require_options",
     "with_options",
 ]
+__dir__ = __all__.copy

@@ -166,8 +166,5 @@ REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, Larges
 """Those that the core computes, in the order of its arguments."""
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]
+__dir__ = __all__.copy

@@ -103,8 +103,5 @@ def _shares(size: Size, seed: int) -> Floats:
     return drawn
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["normal", "uniform"]
+__dir__ = __all__.copy
