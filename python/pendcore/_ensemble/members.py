@@ -17,25 +17,17 @@ Index = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Members:
-    """The members of an ensemble; arrays that were broadcast take the memory of what was given.
-
-    Attributes
-    ----------
-    scene : Scene
-        What they have in common.
-    shape : tuple of int
-        The shape of the ensemble.
-    q0, qd0 : ndarray, (*shape, n)
-        rad, rad/s.
-    vary : dict
-        Parameter name to its values, ``(*shape)``.
-    """
+    """The members of an ensemble; arrays that were broadcast take the memory of what was given."""
 
     scene: Scene
+    """What they have in common."""
     shape: Index
+    """The shape of the ensemble."""
     q0: Floats
     qd0: Floats
+    """(*shape, n), rad and rad/s."""
     vary: dict[str, Floats]
+    """The values of each parameter by its name, (*shape)."""
 
     @property
     def count(self) -> int:

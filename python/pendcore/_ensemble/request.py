@@ -46,24 +46,16 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """The interval, the options and the results that every member is asked for.
-
-    Attributes
-    ----------
-    t_span : (float, float)
-        s.
-    t_eval : ndarray, (n_t,), or None
-        The times at which states are kept, s; None: at the end.
-    reducers : dict
-        Name to reducer.
-    options : dict
-        Those in ``OPTIONS``.
-    """
+    """The interval, the options and the results that every member is asked for."""
 
     t_span: tuple[float, float]
+    """s."""
     t_eval: Floats | None
+    """The times at which states are kept, s, (n_t,); None: at the end."""
     reducers: dict[str, Reducer]
+    """By their names."""
     options: dict[str, Any]
+    """Those in ``OPTIONS``."""
 
     @property
     def events(self) -> tuple[Event, ...]:

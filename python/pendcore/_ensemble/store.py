@@ -45,30 +45,21 @@ _OTHER = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Store:
-    """A store that is open; `opened` makes one.
-
-    Attributes
-    ----------
-    path, place : Path
-        The folder as it was named, and where it is.
-    told : dict
-        The attributes of the group.
-    members, request, blocks
-        What is run, and how it is cut.
-    zarr_arrays : dict
-        The arrays of the result, the status first.
-    folder : os.stat_result
-        The folder that was opened.
-    """
+    """A store that is open; `opened` makes one."""
 
     path: Path
     place: Path
+    """The folder as it was named, and where it is."""
     told: dict[str, Any]
+    """The attributes of the group."""
     members: Members
     request: Request
     blocks: Blocks
+    """What is run, and how it is cut."""
     zarr_arrays: dict[str, Any]
+    """The arrays of the result, the status first."""
     folder: os.stat_result
+    """The folder that was opened."""
 
     @property
     def arrays(self) -> dict[str, StoredArray]:
