@@ -240,5 +240,11 @@ def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
     return ", ".join([*some, "..."] if len(values) > most else some)
 
 
+def in_a_row(words: Iterable[str], before_last: str = "and") -> str:
+    """Return ``a``, ``a and b``, ``a, b and c``."""
+    *most, last = words
+    return f"{', '.join(most)} {before_last} {last}" if most else last
+
+
 def _too_large(name: str, unit: str) -> ValueError:
     return ValueError(f"{name}: is too large: must be below 1.8e308{in_unit(unit)}")

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pendcore._messages.arguments import in_a_row
 from pendcore._run.solution import Solution
 from pendcore._scene.scene import Scene
 from pendcore.effects import KINDS
@@ -66,7 +67,7 @@ class EnergyDrift(NamedTuple):
     def in_words(self) -> str:
         """How large the drift is, in words."""
         if self.changed_by and not self.ledger:
-            return f"not known (changed by {_listed(self.changed_by)}): run with ledger=True"
+            return f"not known (changed by {in_a_row(self.changed_by)}): run with ledger=True"
         size, share = self.largest_drift, self.relative_drift
         of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
         is_number = size is not None and np.isfinite(size)
@@ -137,8 +138,3 @@ def _lowest_potential(scene: Scene) -> float:
     _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())
-
-
-def _listed(kinds: list[str]) -> str:
-    *most, last = kinds
-    return f"{', '.join(most)} and {last}" if most else last

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from pendcore import Mobility, Scene, effects
 from pendcore.explanation.equilibria import Equilibrium, Mode
-from pendcore.messages import as_json, beside, table
+from pendcore.messages import as_json, beside, in_a_row, table
 
 STEPS_A_PERIOD = 500
 """The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
@@ -240,10 +240,9 @@ def _absences(told: Explanation) -> Iterator[str]:
 def _of_lanes(methods: tuple[str, ...]) -> str:
     if not methods:
         return "an ensemble runs its members one by one in each thread"
-    *others, last = methods
-    names = f"{', '.join(others)} or {last}" if others else last
     return (
-        f"an ensemble runs several members at once, a lane each, by {names}; one by one with "
+        f"an ensemble runs several members at once, a lane each, by {in_a_row(methods, 'or')}; "
+        "one by one with "
         "events of your own, for the largest exponent, and for the drift of energy with losses"
     )
 

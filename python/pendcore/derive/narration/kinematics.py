@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from sympy import Integer
 
 from pendcore.derive.chain import Vector
-from pendcore.derive.narration.page import Page, Sides, listed, total
+from pendcore.derive.narration.page import Page, Sides, total
 from pendcore.derive.step import Formula
+from pendcore.messages import in_a_row
 
 
 def kinematics(page: Page) -> None:
@@ -16,6 +17,10 @@ def kinematics(page: Page) -> None:
     links = range(1, page.n + 1)
     chain, centers = page.chain, [page.center(i) for i in links]
     joints = [page.joint(i) for i in range(page.n + 1)]
+    radii = [
+        total(page.along(u, page.coordinate(axis, center)) for axis, u in ("xi", "yj"))
+        for center in centers
+    ]
     _mobility(page)
     origin = (
         "at $A$" if chain.pivot_is_fixed else "the point about which the pivot $A$ moves on a path"
@@ -27,7 +32,7 @@ def kinematics(page: Page) -> None:
         "towards the $y$ axis.",
         *chain.path.items(),
         *_points(page, joints[1:], chain.joints[1:], 0),
-        *((page.vector("r", center), _components(page, center)) for center in centers),
+        *zip((page.vector("r", center) for center in centers), radii, strict=True),
         *_points(page, centers, chain.centers, 0),
     )
     page.step(
@@ -68,7 +73,7 @@ def kinematics(page: Page) -> None:
 def _mobility(page: Page) -> None:
     k = page.n - len(page.equations.locked)  # links that a lock joins count as one
     locks = " A lock makes one body of the two that it joins." if page.equations.locked else ""
-    angles = listed(f"$q_{{{i}}}(t)$" for i in range(1, page.n + 1))
+    angles = in_a_row(f"$q_{{{i}}}(t)$" for i in range(1, page.n + 1))
     symbol = page.s.symbol("M", "M")
     page.step(
         "Degrees of freedom",
@@ -128,10 +133,6 @@ def statements(page: Page) -> list[str]:
     if equations.torques:
         found.append("$\\tau_{j}$ is the sum of the couples of effects at joint $j$.")
     return [*found, *(law.statement for law in equations.laws)]
-
-
-def _components(page: Page, point: Formula) -> Formula:
-    return total(page.along(u, page.coordinate(axis, point)) for axis, u in ("xi", "yj"))
 
 
 def _points(

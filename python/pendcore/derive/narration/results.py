@@ -7,8 +7,9 @@ from typing import Any
 
 from sympy import Dummy, Expr, Integer, Pow, expand
 
-from pendcore.derive.narration.page import Page, Sides, listed
+from pendcore.derive.narration.page import Page, Sides
 from pendcore.derive.notation import ANGLE, RATE
+from pendcore.messages import in_a_row
 
 BY_ELIMINATION = 4
 """The number of unknown accelerations from which determinants are longer than a page."""
@@ -126,8 +127,8 @@ def solution(page: Page) -> None:
         conditions = (f"${write(page.chain.joint(j)[2])} = 0$" for j in locked)
         couples = (f"${write(symbol)}$" for symbol in page.equations.holding.values())
         text += (
-            f" The condition of each lock, {listed(conditions)}, is the equation that finds "
-            f"{listed(couples)}: what the lock must add to $f$ so that ${motion.law}$ holds with "
+            f" The condition of each lock, {in_a_row(conditions)}, is the equation that finds "
+            f"{in_a_row(couples)}: what the lock must add to $f$ so that ${motion.law}$ holds with "
             "these accelerations."
         )
     page.step(
