@@ -12,6 +12,7 @@ cases, and the tables in the documentation are made from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from inspect import Parameter, signature
 from textwrap import fill
 from typing import Any, Literal, NamedTuple, TypeAlias, TypedDict, TypeVar
@@ -125,16 +126,9 @@ PROGRESS = RunOption(
     type="bool or callable",
     if_none="a bar after a second, on a terminal",
 )
-OPTIONS = {
-    one.name: one
-    for one in (
-        *(RunOption(**one) for one in _core.run_options()),
-        ERROR,
-        SENSITIVITIES,
-        ON_FAILURE,
-        PROGRESS,
-    )
-}
+_EVERY = [RunOption(**told) for told in _core.run_options()]
+_EVERY += [ERROR, SENSITIVITIES, ON_FAILURE, PROGRESS]
+OPTIONS = {one.name: one for one in _EVERY}
 """By name, in the order of the signature."""
 RUN_DEFAULTS = {name: option.default for name, option in OPTIONS.items()}
 
@@ -161,12 +155,8 @@ def with_options(
     def described(function: Function) -> Function:
         own = signature(function)
         first = [one for one in own.parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
-        options = [
-            Parameter(
-                one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=one.annotation
-            )
-            for one in listed
-        ]
+        by_name = partial(Parameter, kind=Parameter.KEYWORD_ONLY)
+        options = [by_name(x.name, default=x.default, annotation=x.annotation) for x in listed]
         shown: Any = function
         shown.__signature__ = own.replace(parameters=[*first, *options])
         if function.__doc__ is not None:  # python -OO has none

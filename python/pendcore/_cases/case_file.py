@@ -89,7 +89,7 @@ def case_from_text(content: str, name: str) -> Case:
     scene = _scene(text)
     q0, qd0 = _start(text, len(scene.links))
     t_span, options = _run(text)
-    if events := _events(text):
+    if events := [_event(text, i, table) for i, table in enumerate(_tables(text, "event"))]:
         options["events"] = events
     title = text.value(("name",)) or ""
     if not isinstance(title, str):
@@ -114,7 +114,7 @@ def _scene(text: TomlText) -> Scene:
                 raise text.error(("link", i), f"link {i + 1} needs {key}")
         links.append(Link(**{key: text.number(("link", i, key)) for key in table}))
     gravity = {"gravity": text.number(("gravity",))} if "gravity" in text.content else {}
-    effects = _effects(text)
+    effects = [_effect(text, i, table) for i, table in enumerate(_tables(text, "effect"))]
     try:
         return Scene(links=links, effects=effects, **gravity)
     except ValueError as error:
@@ -126,10 +126,6 @@ def _tables(text: TomlText, noun: str) -> list[dict[str, Any]]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise text.error((noun,), f"{noun}s are tables [[{noun}]], one for each")
     return [dict(table) for table in tables]
-
-
-def _effects(text: TomlText) -> list[Effect]:
-    return [_effect(text, i, table) for i, table in enumerate(_tables(text, "effect"))]
 
 
 def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
@@ -146,10 +142,6 @@ def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
         return made(KINDS[kind], table, where)
     except (ValueError, TypeError) as error:
         raise text.error(_place(str(error)), str(error)) from None
-
-
-def _events(text: TomlText) -> tuple[Event, ...]:
-    return tuple(_event(text, i, table) for i, table in enumerate(_tables(text, "event")))
 
 
 def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
