@@ -74,9 +74,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
     """Return what was measured, and whether the measurement is complete."""
-    options = {
-        name: value for name, value in case.options.items() if OPTIONS[name].limits_every_method
-    }
+    options = {key: x for key, x in case.options.items() if OPTIONS[key].limits_every_method}
     try:
         return accuracy_cost(
             case.scene, case.t_span, case.q0, case.qd0,

@@ -51,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
         raise UsageError("--worksheet: belongs to a report: add --to report")
     with blamed_on_usage():
         case = case_of(args)
-        derivation = _derived(case)
+        derivation = pendcore.derive.Derivation(case.scene)
     if args.to == "report":
         return _report(derivation, case, args)
     with blamed_on_usage("-o"):
@@ -66,13 +66,6 @@ def execute(args: argparse.Namespace) -> int:
         path.write_text(text, encoding="utf-8")
     print(where, file=sys.stderr)
     return 0
-
-
-def _derived(case: Case) -> Any:
-    try:
-        return pendcore.derive.Derivation(case.scene)
-    except ModuleNotFoundError as missing:
-        raise UsageError(str(missing)) from None
 
 
 def _text(derivation: Any, args: argparse.Namespace) -> str:

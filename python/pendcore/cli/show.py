@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 from pendcore import Solution
 from pendcore.cli import arguments
@@ -51,7 +52,9 @@ def execute(args: argparse.Namespace) -> int:
     args.out = args.out or Path("out", f"{args.case.stem if args.case else 'textbook'}.html")
     if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
         raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")
-    _refuse_what_is_not_shown(args)
+    if args.out.suffix.lower() not in (".mp4", ".gif"):
+        for name in _of_films(args):
+            raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
     with blamed_on_usage():
         solution = arguments.solution_of(args)
         args.out.parent.mkdir(parents=True, exist_ok=True)
@@ -68,13 +71,11 @@ def execute(args: argparse.Namespace) -> int:
     return 0 if solution.success else 1
 
 
-def _refuse_what_is_not_shown(args: argparse.Namespace) -> None:
-    """Refuse options of films for what is none."""
-    if args.out.suffix.lower() in (".mp4", ".gif"):
-        return
-    for name in ("speed", "fps", "trace", "reactions", "energy", "horizon"):
-        if getattr(args, name) not in (None, False):
-            raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
+def _of_films(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the options of films that were given."""
+    names = ("speed", "fps", "trace", "reactions", "energy", "horizon")
+    given = {name: getattr(args, name) for name in names}
+    return {name: x for name, x in given.items() if x is not None and x is not False}
 
 
 def _write(solution: Solution, args: argparse.Namespace) -> Path:
@@ -84,11 +85,4 @@ def _write(solution: Solution, args: argparse.Namespace) -> Path:
         with whole_file(args.out) as path:
             save_figure(solution, path, what="strip")
         return Path(args.out)
-    given = {name: getattr(args, name) for name in ("speed", "fps", "trace")}
-    return solution.to_video(
-        args.out,
-        **{name: value for name, value in given.items() if value is not None},
-        reactions=args.reactions,
-        energy=args.energy,
-        horizon=args.horizon,
-    )
+    return solution.to_video(args.out, **_of_films(args))

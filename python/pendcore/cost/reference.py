@@ -62,10 +62,6 @@ class Reference(NamedTuple):
         error = float(solution.scene.distances(q, r).max())
         return error if error == error else inf
 
-    def first_times(self, count: int) -> Reference:
-        """Return the reference on the first of its times alone."""
-        return self._replace(times=self.times[:count], apart=self.apart[:count])
-
     def texts(self) -> tuple[str, str]:
         """Return how the two runs were made, for people."""
         return _text(self.first), _text(self.second)
@@ -81,13 +77,15 @@ def reference(
     TooFarError
         If no two methods get beyond the first of the times; it says why.
     """
-    times = _grid(start.t_start, start.t_end, points)
+    times = np.linspace(start.t_start, start.t_end, points)
+    times = times[np.append(True, np.diff(times) != 0)]  # a span of a few last bits has fewer
     runs: list[pc.Solution] = []
     until = monotonic() + time_limit
     for method in REFEREES_IF_STIFF if stiff else methods.most_accurate():
         if not start.is_supported_by(method):
             continue
-        rtol = tightest_rtol(method)
+        is_implicit = methods.implicit_method() in methods_of(method)
+        rtol = methods.TIGHTEST_IMPLICIT if is_implicit else methods.TIGHTEST
         left = max(until - monotonic(), 1e-3) / 2
         how = {"rtol": rtol, "atol": atol_beside(rtol), "compensated": True, "t_eval": times}
         runs.append(start.run(method, **how, time_limit=left, **limits))
@@ -114,13 +112,6 @@ def known_until(found: Reference) -> int:
     return int(np.argmax(~(found.apart <= KNOWN)))
 
 
-def _grid(t_start: float, t_end: float, points: int) -> Floats:
-    """Return evenly spaced times, s: both ends to the last bit, none twice."""
-    times = np.linspace(t_start, t_end, points)
-    distinct: Floats = times[np.append(True, np.diff(times) != 0)]
-    return distinct  # a span of a few last bits has fewer times than points
-
-
 def _compared(runs: list[pc.Solution], times: Floats) -> Reference:
     first, second = runs
     count = len(times)
@@ -136,12 +127,3 @@ def methods_of(method: str) -> set[str]:
     """Return a method's name and, for a pair, the names of its two methods."""
     known = methods.known_methods()[method]
     return {method, known["first"], known["second"]} - {""}
-
-
-def tightest_rtol(method: str) -> float:
-    """Return the rtol below which a run by a method gets no more accurate."""
-    return (
-        methods.TIGHTEST_IMPLICIT
-        if methods.implicit_method() in methods_of(method)
-        else methods.TIGHTEST
-    )

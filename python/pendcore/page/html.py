@@ -57,12 +57,13 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     has_events = bool(solution.events_asked_for())
     told = why_it_plays_back(solution)
     core = None if told else core_for_browsers()
+    known: dict[str, Any] = {**effects.kinds(), **effects.parts()}
     data = {
         "case": _plain_case(case, solution),
         "hash": "" if has_events else solution.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
-        "kinds": _descriptors(),
+        "kinds": [x.description for x in known.values() if not x.description.is_function],
         "options": _options(),
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
@@ -152,12 +153,6 @@ def _method(case: Case, solution: Solution) -> str:
     return "auto" if usual == solution.method and is_adaptive else solution.method
 
 
-def _descriptors() -> list[Any]:
-    """Return what is known of effects and of their parts."""
-    known = [*effects.kinds().values(), *effects.parts().values()]
-    return [one.description for one in known if not one.description.is_function]
-
-
 def _options() -> list[dict[str, Any]]:
     """Return the options of a run that a page takes: their words, or their type."""
     stores = re.findall('"(.*?)"', OPTIONS["store"].type)
@@ -183,10 +178,8 @@ def _defaults() -> dict[str, Any]:
 
 def _parameters(value: Any) -> dict[str, Any]:
     """Return the parameters of an effect, or of a part, that are not what they are if left out."""
-    return {
-        name: _parameters(one) if isinstance(one, effects.Part) else one
-        for name, one in value.particulars().items()
-    }
+    given = value.particulars().items()
+    return {name: _parameters(x) if isinstance(x, effects.Part) else x for name, x in given}
 
 
 def _recording(solution: Solution) -> dict[str, Any]:

@@ -228,10 +228,8 @@ def _summary(asked: _Asked, pixels: Pixels) -> str:
         f"{table.x.count} x {table.y.count} pixels",
         "runs: " + ", ".join(f"{count} {name}" for name, count in pixels.counts.items()),
     ]
-    if pixels.forbidden:
-        lines.append(
-            f"{pixels.forbidden} were not needed: the energy does not suffice for the event"
-        )
+    if needless := pixels.forbidden:
+        lines.append(f"{needless} were not needed: the energy does not suffice for the event")
     if args.refine:
         share = np.count_nonzero(pixels.computed) / total
         lines.append(f"computed at the finest level: {share:.1%}")

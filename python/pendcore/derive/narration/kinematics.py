@@ -22,9 +22,8 @@ def kinematics(page: Page) -> None:
         for center in centers
     ]
     _mobility(page)
-    origin = (
-        "at $A$" if chain.pivot_is_fixed else "the point about which the pivot $A$ moves on a path"
-    )
+    path = "the point about which the pivot $A$ moves on a path"
+    origin = "at $A$" if chain.pivot_is_fixed else path
     page.step(
         "Positions",
         "The plane of motion is the $xy$ plane, with $x$ to the right and $y$ vertical, positive "
@@ -35,18 +34,13 @@ def kinematics(page: Page) -> None:
         *zip((page.vector("r", center) for center in centers), radii, strict=True),
         *_points(page, centers, chain.centers, 0),
     )
-    page.step(
-        "Velocities of the mass centres",
-        "The velocity is the derivative of the position with respect to time.",
-        *_points(page, centers, chain.center_velocities, 1),
-    )
+    text = "The velocity is the derivative of the position with respect to time."
+    found = _points(page, centers, chain.center_velocities, 1)
+    page.step("Velocities of the mass centres", text, *found)
     tip = [chain.tip_acceleration] if page.equations.payload is not None else []
-    page.step(
-        "Accelerations of the mass centres",
-        "The acceleration is the derivative of the velocity with respect to time.",
-        *_points(page, centers, chain.center_accelerations, 2),
-        *_points(page, joints[-1:] * len(tip), tip, 2),
-    )
+    named, moved = [*centers, *joints[-1:] * len(tip)], [*chain.center_accelerations, *tip]
+    text = "The acceleration is the derivative of the velocity with respect to time."
+    page.step("Accelerations of the mass centres", text, *_points(page, named, moved, 2))
     page.step(
         "Angular velocities and accelerations",
         "Every link turns about the $z$ axis, whose unit vector is $\\mathbf{k}$; turning from $x$ "
@@ -91,15 +85,11 @@ def _moments_of_inertia(page: Page) -> None:
     found: list[Sides] = [(name, value) for name, value in given if value != name]
     text = "The moment of inertia of each link about its mass centre is given."
     if found:
-        text = (
-            "The moment of inertia of a link about its mass centre is that of a uniform rod, "
-            "unless another is given."
-        )
+        text = "The moment of inertia of a link about its mass centre is that of a uniform rod, "
+        text += "unless another is given."
     if page.chain.pivot_is_fixed:
-        text += (
-            " Link 1 turns about the fixed point $A$, for which the parallel axis theorem gives "
-            "$I_{A}$."
-        )
+        text += " Link 1 turns about the fixed point $A$, for which the parallel axis theorem "
+        text += "gives $I_{A}$."
         found.append((names[0], names[1] + s.masses[0] * s.centers[0] ** 2))
         if s.inertias[0] != names[1]:
             found.append((names[0], page.equations.links[0].moment.inertia / s.qdd[0]))

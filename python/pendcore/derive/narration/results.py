@@ -17,11 +17,8 @@ BY_ELIMINATION = 4
 
 def equations_of_motion(page: Page) -> None:
     """Write the reactions, and what is left without them."""
-    page.step(
-        "Joint reactions",
-        "Newton's equations give the joint reactions, from the tip inwards.",
-        *_reactions(page),
-    )
+    text = "Newton's equations give the joint reactions, from the tip inwards."
+    page.step("Joint reactions", text, *_reactions(page))
     if page.n == 2:
         _put_in(page)
     law, locked = page.derivation.law, page.derivation.locking
@@ -36,11 +33,8 @@ def equations_of_motion(page: Page) -> None:
             "a couple acts on the link beyond its joint, and the opposite couple on the link "
             "before it."
         )
-    page.step(
-        "Equations of motion, collected" if page.n == 2 else "Equations of motion",
-        text,
-        *(page.derivation.named.entries | locked).items(),
-    )
+    title = "Equations of motion" + ", collected" * (page.n == 2)
+    page.step(title, text, *(page.derivation.named.entries | locked).items())
 
 
 def _reactions(page: Page) -> Iterator[Sides]:
@@ -151,12 +145,9 @@ def first_order(page: Page) -> None:
         for name, value in ((x, xd), (xd, qdd)):
             rate = page.s.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
             rates.append((rate, value))
-    page.step(
-        "First-order form",
-        "Equations of second order become a system of first order, with two states for each link.",
-        *names,
-        *rates,
-    )
+    text = "Equations of second order become a system of first order, with two states for each "
+    text += "link."
+    page.step("First-order form", text, *names, *rates)
 
 
 def energy(page: Page) -> None:
@@ -170,18 +161,12 @@ def energy(page: Page) -> None:
     )
     text = "The motion conserves the energy; no step above has used this."
     if names:
-        text = (
-            "Only the effects change the energy, at the rate of the sum of their powers: "
-            f"{', '.join(told)}."
-        )
+        text = "Only the effects change the energy, at the rate of the sum of their powers: "
+        text += f"{', '.join(told)}."
     rate = page.s.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
-    page.step(
-        "Energy",
-        text,
-        *((page.s.symbol(name, name), value) for name, value in energies),
-        *zip(names, powers.values(), strict=True),
-        (rate, sum(names)),
-    )
+    found = [(page.s.symbol(name, name), value) for name, value in energies]
+    found += zip(names, powers.values(), strict=True)
+    page.step("Energy", text, *found, (rate, sum(names)))
 
 
 def _named(effect: Any) -> str:

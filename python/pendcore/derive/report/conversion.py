@@ -55,11 +55,6 @@ PREAMBLE = r"""
 """
 
 
-def has_pandoc() -> bool:
-    """Whether pages can be made."""
-    return shutil.which("pandoc") is not None
-
-
 def latex_engine() -> str | None:
     """Return the LaTeX engine that this machine has."""
     return next((engine for engine in ENGINES if shutil.which(engine)), None)
