@@ -68,9 +68,7 @@ class FromDefect:
         """Return what is to look on while a trial of a typical error, ``scale``, is made."""
         motions: list[tuple[Start, tuple[int, ...]]] = [(start, self.points)]
         motions += [(moved(start, seed), self.points[1:]) for seed in range(neighbours(scale))]
-        return _core.DefectCorrection(
-            [(one.scene._compiled, one.q0, points) for one, points in motions]
-        )
+        return _core.DefectCorrection([(x.scene._compiled, x.q0, points) for x, points in motions])
 
     def verify(self, runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
         """Return the error of a trial as its correction shows it; None if it cannot be trusted."""

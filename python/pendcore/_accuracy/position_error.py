@@ -11,15 +11,13 @@ import numpy.typing as npt
 from pendcore._messages.arguments import Floats
 from pendcore._run.solution import Solution
 
-POINTS = 101
-"""The number of times on the fixed grid on which methods are compared, both ends included."""
 SAMPLES, CUTS = 6, 60
 """The steps of the other runs cut a step of the run into intervals. Each interval holds SAMPLES
 times, or a single one where it is one of more than CUTS: the error within a step is a polynomial of
 low degree."""
 
 
-def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
+def time_grid(t_start: float, t_end: float, points: int = 101) -> Floats:
     """Return evenly spaced times of a run, s, (points,): both ends to the last bit, none twice."""
     return _distinct(
         np.linspace(t_start, t_end, points)

@@ -72,9 +72,8 @@ def second_run(runs: Trials, trial: TrialRun) -> TrialRun:
     if tight_runs(trial):
         return runs.second(trial, 0.0)
     if better_than(runs, trial):
-        return runs.second(
-            trial, min(second.scale for second in runs.seconds) / tuning.BETTER_STILL
-        )
+        best = min(second.scale for second in runs.seconds)
+        return runs.second(trial, best / tuning.BETTER_STILL)
     return runs.second(trial, trial.scale / (tuning.SPARED * better_by(trial)))
 
 

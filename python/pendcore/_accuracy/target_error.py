@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from math import inf
+from time import monotonic
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -167,7 +168,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> Solution:
         seconds = [second_run(runs, latest) for _ in range(tight_runs(latest) or 2)]
         error = runs.compared(latest, seconds)
     solution = runs.concluded(latest.solution, "ended early", error)
-    if not error.is_complete and runs.is_out_of_time:
+    if not error.is_complete and monotonic() - runs.began >= runs.time_limit:
         solution.known_error = None  # a later call with more time may complete the estimate
     return solution
 

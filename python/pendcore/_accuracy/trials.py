@@ -130,10 +130,6 @@ class Trials:
         return min(self.trials, key=lambda trial: trial.scale)
 
     @property
-    def is_out_of_time(self) -> bool:
-        return monotonic() - self.began >= self.time_limit
-
-    @property
     def keeps_few_times(self) -> bool:
         store, t_eval = self.options["store"], self.options["t_eval"]
         few = t_eval is not None and np.size(t_eval) < tuning.FEW
@@ -274,10 +270,8 @@ class Trials:
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
-        enough = tuning.MOST_STEPS * max(
-            self.trials[0].solution.stats.accepted, tuning.FIRST_COUNTS_AS
-        )
-        return min(times * int(self.options["max_steps"]), enough)
+        first = max(self.trials[0].solution.stats.accepted, tuning.FIRST_COUNTS_AS)
+        return min(times * int(self.options["max_steps"]), tuning.MOST_STEPS * first)
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
         """Continue a second run to the end of a trial: a terminal event may come a bit later."""

@@ -69,9 +69,7 @@ def text(name: str, value: object) -> str:
     return value
 
 
-def listed_names(
-    argument: str, given: object, example: str, kind: type[Any] = str
-) -> tuple[Any, ...]:
+def listed_names(argument: str, given: object, example: str, kind: type = str) -> tuple[Any, ...]:
     """Return what a list of names, or of another kind, holds; a text alone is none."""
     if isinstance(given, Iterable) and not isinstance(given, str):
         names = tuple(given)

@@ -15,17 +15,14 @@ _WIDTH = 180
 
 def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     """Return a table; without a head, the first cell of each row names it."""
-    lines = []
-    if head:
-        cells = "".join(f"<th style='{_LEFT}'>{escape(cell)}</th>" for cell in head)
-        lines.append(f"<tr>{cells}</tr>")
-    for row in rows:
-        first = "td" if head else "th"
-        cells = "".join(
-            f"<{kind} style='{_LEFT}'>{escape(cell)}</{kind}>"
-            for kind, cell in zip([first, *["td"] * (len(row) - 1)], row, strict=True)
-        )
-        lines.append(f"<tr>{cells}</tr>")
+
+    def line(first: str, others: str, row: Sequence[str]) -> str:
+        kinds = [first, *[others] * (len(row) - 1)]
+        cells = (f"<{x} style='{_LEFT}'>{escape(y)}</{x}>" for x, y in zip(kinds, row, strict=True))
+        return f"<tr>{''.join(cells)}</tr>"
+
+    lines = [line("th", "th", head)] if head else []
+    lines += [line("td" if head else "th", "td", row) for row in rows]
     return f"<table>{''.join(lines)}</table>"
 
 

@@ -85,7 +85,9 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     times = np.concatenate([[asked["t_start"]], run.t[::every], [run.t_reached]])
     n = states.shape[1] // 2
     kinetic, potential = solution.scene._compiled.energy(times, states[:, :n], states[:, n:])
-    working = _kinds_that_do_work(solution.scene)
+    effects = solution.scene.effects
+    present = {effect.kind for effect in effects if effect.description.account != "none"}
+    working = [kind for kind in KINDS if kind in present]
     with np.errstate(all="ignore"):  # a blow-up's energies may be infinite; that is told in words
         total = kinetic + potential
         drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
@@ -117,12 +119,6 @@ def trusted_digits(solution: Solution) -> int:
     if not isfinite(share):
         return FEWEST
     return MOST if share == 0 else min(max(floor(-log10(share)), FEWEST), MOST)
-
-
-def _kinds_that_do_work(scene: Scene) -> list[str]:
-    """Return the kinds of effects that change the total energy."""
-    present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
-    return [kind for kind in KINDS if kind in present]
 
 
 def _lowest_potential(scene: Scene) -> float:

@@ -43,20 +43,11 @@ if TYPE_CHECKING:
 class Solution:
     """The result of `simulate`.
 
-    Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
+    Call it, ``sol(t)``, for the state between the steps; ``t``, ``q`` and ``qd`` are what it kept.
+    It pickles; `save` and `load` keep it all.
 
     Attributes
     ----------
-    t : ndarray, (n_t,)
-        Times of the accepted steps, or ``t_eval``, s.
-    q, qd : ndarray, (n_t, n)
-        Absolute angles, rad, and their rates, rad/s. ``y``, (2n, n_t), has both as SciPy does.
-    status, message, success : str, str, bool
-        How the run ended: in a word, in a sentence, and whether as it was asked to.
-    events : list of FoundEvents
-        What was found of each event asked for.
-    stats : Statistics
-        What the run took.
     scene : Scene
         What moved.
     known_error : ErrorEstimate or None
@@ -490,15 +481,12 @@ class Solution:
     ) -> float:
         """Return how far to trust the run: the time at which its error passes a limit, s.
 
-        The answer errs on the safe side; it is the end of the run if the error stays within the
-        limit. See `ErrorEstimate.valid_until`.
+        The answer errs on the safe side.
 
         Parameters
         ----------
-        limit : float
-            rad; with ``of="position"`` a share of the total length.
-        of : {"angle", "position"}
-            It limits the angles of the links, or the positions of joints and tip.
+        limit, of
+            As in `ErrorEstimate.valid_until`.
         time_limit : float, optional
             As in `estimate_error`; the answer is then how far the run is known to hold by then.
 

@@ -247,8 +247,7 @@ def _broken(call: str, room: int, indent: str = "... ") -> str:
 def _meaning(parameter: Parameter) -> str:
     """Return what a parameter is, its symbol, its range and its unit."""
     symbol = f"{parameter.symbol}: " if parameter.symbol else ""
-    sentence = (
-        parameter.sentence if symbol else parameter.sentence[:1].upper() + parameter.sentence[1:]
-    )
+    told = parameter.sentence
+    sentence = told if symbol else told[:1].upper() + told[1:]
     allowed = f"; {parameter.range}" if parameter.range else ""
     return f"{symbol}{sentence}{allowed}{in_unit(parameter.unit)}."

@@ -23,9 +23,7 @@ class Parametrized:
 
     def particulars(self) -> dict[str, Any]:
         """Return the parameters that differ from their defaults, enough to make it again."""
-        return {
-            f.name: value for f in fields(self) if (value := getattr(self, f.name)) != f.default
-        }
+        return {f.name: x for f in fields(self) if (x := getattr(self, f.name)) != f.default}
 
     def replace(self, **changes: Any) -> Self:
         """Return an object with other parameters; those not given stay."""
