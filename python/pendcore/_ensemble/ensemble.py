@@ -426,9 +426,8 @@ class Ensemble:
             raise ImportError("to_xarray() needs xarray: pip install xarray") from None
         axes, request = member_axes(self.shape), self.request
         data: dict[str, Any] = {}
-        coords: dict[str, Any] = {
-            x.name: (x.axes, x.values, {"units": x.unit}) for x in coordinates(self.members)
-        }
+        starts = coordinates(self.members)
+        coords: dict[str, Any] = {x.name: (x.axes, x.values, {"units": x.unit}) for x in starts}
         for one in request.variables(len(self.members.scene.links)):
             values = self.status if one.name == "status" else self._read(one.name)
             data[one.name] = ([*axes, *one.labels], values, {"units": one.unit} if one.unit else {})

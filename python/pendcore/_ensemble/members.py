@@ -85,13 +85,9 @@ def members_of(
             f"the members' axes do not broadcast: {shapes}; the last axis of q0 and qd0, which "
             "runs over the links, is left out here"
         ) from None
-    return Members(
-        scene,
-        shape,
-        np.broadcast_to(angles, (*shape, n)),
-        np.broadcast_to(rates, (*shape, n)),
-        {name: np.broadcast_to(values, shape) for name, values in given.items()},
-    )
+    q, qd = (np.broadcast_to(one, (*shape, n)) for one in (angles, rates))
+    varied = {name: np.broadcast_to(values, shape) for name, values in given.items()}
+    return Members(scene, shape, q, qd, varied)
 
 
 def _start(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
@@ -136,13 +132,10 @@ def coordinates(members: Members) -> list[Coordinate]:
     """Return the coordinates of the members: q0, qd0, and what varies."""
     units = members.scene.parameter_units()
     axes = member_axes(members.shape)
-    found = [
-        Coordinate("q0", *_needed([*axes, "link"], members.q0), "rad"),
-        Coordinate("qd0", *_needed([*axes, "link"], members.qd0), "rad/s"),
-    ]
-    for name, values in members.vary.items():
-        found.append(Coordinate(name, *_needed(axes, values), units[name]))
-    return found
+    starts = ("q0", members.q0, "rad"), ("qd0", members.qd0, "rad/s")
+    found = [Coordinate(name, *_needed([*axes, "link"], x), unit) for name, x, unit in starts]
+    varied = members.vary.items()
+    return [*found, *(Coordinate(name, *_needed(axes, x), units[name]) for name, x in varied)]
 
 
 def members_from(

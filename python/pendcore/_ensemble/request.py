@@ -94,9 +94,8 @@ class Request:
 
     def check_reducers(self) -> None:
         """Raise an error for what a reducer cannot be used with."""
-        for kind in {type(one) for one in self.reducers.values() if one.needs_one_tolerance}:
-            for name in ("rtol", "atol"):
-                if np.ndim(self.options[name]) > 0:
-                    raise TypeError(
-                        f"{name}: must be one number with pc.reducers.{kind.__name__}()"
-                    )
+        for name in ("rtol", "atol"):
+            for one in self.reducers.values():
+                if one.needs_one_tolerance and np.ndim(self.options[name]) > 0:
+                    known = f"pc.reducers.{type(one).__name__}()"
+                    raise TypeError(f"{name}: must be one number with {known}")

@@ -64,11 +64,8 @@ class Store:
     @property
     def arrays(self) -> dict[str, StoredArray]:
         """Return the arrays of the result, which read from the disk when they are indexed."""
-        status = self.zarr_arrays["status"]
-        return {
-            name: StoredArray(self.path, self.place, one, status)
-            for name, one in self.zarr_arrays.items()
-        }
+        found, status = self.zarr_arrays.items(), self.zarr_arrays["status"]
+        return {name: StoredArray(self.path, self.place, one, status) for name, one in found}
 
     def not_done(self) -> tuple[int, str]:
         """Return the number of members whose files are missing, and the first missing file.
@@ -179,9 +176,8 @@ def _zarr_array(path: Path, name: str, mode: str) -> Any:
         raise
     except Exception as error:  # whatever Zarr makes of a value that it does not expect
         raise ValueError(f"{name}/{DOCUMENT}: {error}") from error
-    return zarr.Array(
-        zarr.AsyncArray(found.metadata, found.store_path, config={"write_empty_chunks": True})
-    )
+    config = {"write_empty_chunks": True}
+    return zarr.Array(zarr.AsyncArray(found.metadata, found.store_path, config=config))
 
 
 @contextmanager

@@ -127,10 +127,7 @@ class Explanation:
         return plain
 
     def _repr_html_(self) -> str:
-        costs = [
-            [what, "" if operations is None else str(operations), f"{nanoseconds:.0f}"]
-            for what, operations, nanoseconds in self.costs
-        ]
+        costs = [[x, "" if n is None else str(n), f"{ns:.0f}"] for x, n, ns in self.costs]
         found = []
         for one in self.equilibria:
             shown = [x.angular_frequency for x in one.modes if x.angular_frequency > 0]

@@ -78,8 +78,9 @@ def draw_section(asked: Request) -> list[Artist]:
     event = _within("event", asked.event, 0, len(events) - 1)
     found, wanted = events[event], asked.solution.events_asked_for()[event]
     angles = _within_a_turn(found.q)
-    usual = _moving(angles) if asked.link is None else asked.link
-    link = _within("link", usual, 1, angles.shape[1])
+    spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
+    moving = int(np.argmax(spans > 1e-6)) + 1  # the first whose angle is not always the same, or 1
+    link = _within("link", moving if asked.link is None else asked.link, 1, angles.shape[1])
     axis = one_axes(asked.ax, _SIZE, asked.new_figure)
     ours: dict[str, Any] = {"color": theme_of(axis).link(link - 1), "linestyle": "", "marker": "."}
     ours |= {"markersize": 3.0 if len(found) > 50 else 6.0}
@@ -107,12 +108,6 @@ def _count(axis: Axes) -> int:
     return sum(line.get_gid() == _GID for line in axis.lines)
 
 
-def _moving(angles: Floats) -> int:
-    """Return the first link whose angle is not the same at every event, or 1."""
-    spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
-    return int(np.argmax(spans > 1e-6)) + 1
-
-
 def _fitting(places: Floats) -> tuple[float, float]:
     """Return the size of a figure, inches, into which places (..., 2), m, fit to scale."""
     width, height = np.ptp(places.reshape(-1, 2), axis=0)
@@ -120,18 +115,16 @@ def _fitting(places: Floats) -> tuple[float, float]:
     return _SIZE[0], across * down + 1.1
 
 
-def _draw(
-    axis: Axes, t: Floats, points: Floats, asked: Request, ours: dict[str, Any]
-) -> list[Artist]:
+def _draw(axis: Axes, t: Floats, xy: Floats, asked: Request, ours: dict[str, Any]) -> list[Artist]:
     """Draw a curve (k, 2), pale where it is past the horizon; its name says until when."""
     how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
     count = int((np.abs(t - t[0]) <= abs(asked.until - t[0])).sum())
-    lines = axis.plot(*points[:count].T, gid=_GID, **how)
+    lines = axis.plot(*xy[:count].T, gid=_GID, **how)
     if count < len(t):
         known = {line.get_label() for other in axis.figure.axes for line in other.lines}
         said = "_" if asked.after() in known else asked.after()
         pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
-        axis.plot(*points[max(count - 1, 0) :].T, label=said, **pale)
+        axis.plot(*xy[max(count - 1, 0) :].T, label=said, **pale)
     return [*lines]
 
 
