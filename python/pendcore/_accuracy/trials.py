@@ -139,11 +139,6 @@ class Trials:
         """Whether some effect of the scene has a property."""
         return any(has(effect.description) for effect in self.start.scene.effects)
 
-    @property
-    def warns(self) -> bool:
-        """Whether the next run is the first of all, which gives the warnings about the start."""
-        return self.tries_the_least and not self.paid
-
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
         if self.is_stiff:
@@ -217,12 +212,9 @@ class Trials:
         self, trial: TrialRun, found: Callable[[], ErrorEstimate | None]
     ) -> ErrorEstimate | None:
         """Return the error that a trial's own defect shows, found once."""
-        if (trial,) not in self._estimates:
-            error = found()
-            if error is None:
-                return None
+        if (trial,) not in self._estimates and (error := found()) is not None:
             self._estimates[trial,] = error
-        return self._estimates[trial,]
+        return self._estimates.get((trial,))
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
         """Return how far a trial is at most from one second run, as a share of the length."""
@@ -298,10 +290,11 @@ class Trials:
     ) -> TrialRun:
         is_second = start.scene is not self.start.scene
         compensated = is_second or self.compensated or rtol < tuning.COMPENSATED_BELOW
+        is_first = self.tries_the_least and not self.paid  # it warns of the start
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=warn if self.warns else silent, watch=correction,
+            warn=warn if is_first else silent, watch=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:

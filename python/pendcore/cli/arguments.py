@@ -71,10 +71,7 @@ def load_solution(path: Path) -> Solution:
 def solution_of(args: argparse.Namespace) -> Solution:
     """Return the solution that was named, or that of the case; the most accurate, if none will do.
 
-    Raises
-    ------
-    UsageError
-        If a case asks for an error that cannot be kept, and nothing was computed.
+    Where nothing was computed, as an error that a case asks for cannot be kept, it is a UsageError.
     """
     if args.case is not None and args.case.suffix == ".npz":
         return load_solution(args.case)

@@ -12,6 +12,7 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
+from pendcore.messages import positive
 from pendcore.options import OPTIONS
 
 HELP = "measure what accuracy costs on a case: errors and times of every method"
@@ -45,13 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if not args.error > 0:
-        raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
-    if not args.time_limit > 0:
-        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
     if args.repeats < 1:
         raise UsageError(f"--repeats = {args.repeats}: must be >= 1")
     with blamed_on_usage():
+        positive("--error", args.error, "of the total length")
+        positive("--time-limit", args.time_limit, "s")
         case = arguments.case_of(args)
     folder = arguments.folder_of(args)
     with new_folder(folder):

@@ -77,9 +77,9 @@ def _effect(effect: Effect) -> dict[str, Any]:
 
 def _events(solution: Solution) -> list[dict[str, Any]]:
     """Return each event asked for, and when it was found."""
+    found = zip(solution.events_asked_for(), solution.events, strict=True)
     return [
-        {"kind": event.kind, "text": repr(event), "times": [one.t for one in found]}
-        for event, found in zip(solution.events_asked_for(), solution.events, strict=True)
+        {"kind": x.kind, "text": repr(x), "times": [one.t for one in of_x]} for x, of_x in found
     ]
 
 

@@ -10,9 +10,9 @@ from typing import Any
 from pendcore import Solution
 from pendcore.cli.arguments import add_case_or_solution, add_flags, add_number, solution_of
 from pendcore.cli.horizon import horizon_of
-from pendcore.cli.usage import UsageError, blamed_on_usage
+from pendcore.cli.usage import blamed_on_usage
 from pendcore.explanation.solution_text import LIMIT
-from pendcore.messages import as_json
+from pendcore.messages import as_json, positive
 
 HELP = "say until when a run is right"
 DESCRIPTION = "Say how far to trust a run: a saved run, or the run of a case."
@@ -39,11 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if not args.limit > 0:
-        raise UsageError(f"--limit = {args.limit!r}: must be > 0 (rad)")
-    if args.time_limit is not None and not args.time_limit > 0:
-        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
     with blamed_on_usage():
+        positive("--limit", args.limit, "rad")
+        if args.time_limit is not None:
+            positive("--time-limit", args.time_limit, "s")
         solution = solution_of(args)
         found = trust(solution, args.limit, args.time_limit)
     if args.json:

@@ -26,13 +26,7 @@ KNOWN = 1e-8
 
 
 class TooFarError(ValueError):
-    """No two methods got beyond the first of the times.
-
-    Attributes
-    ----------
-    reached : float
-        The time that the second farthest run reached, s.
-    """
+    """No two methods got beyond the first of the times; the second best ``reached`` a time, s."""
 
     def __init__(self, message: str, reached: float) -> None:
         super().__init__(message)
@@ -72,10 +66,7 @@ def reference(
 ) -> Reference:
     """Run two methods as accurately as doubles allow, each in its share of the time.
 
-    Raises
-    ------
-    TooFarError
-        If no two methods get beyond the first of the times; it says why.
+    A TooFarError says why no two get beyond the first of the times.
     """
     times = np.linspace(start.t_start, start.t_end, points)
     times = times[np.append(True, np.diff(times) != 0)]  # a span of a few last bits has fewer
