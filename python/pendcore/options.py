@@ -55,38 +55,26 @@ class RunKeywords(TypedDict, total=False):
 
 
 class RunOption(NamedTuple):
-    """The descriptor of an option.
-
-    Attributes
-    ----------
-    name, annotation : str
-        The keyword, and how Python annotates what may be given.
-    sentence : str
-        What it is, in reStructuredText.
-    default : object
-        What holds if it is not given.
-    if_none : str
-        What a run does where that is None.
-    type : str
-        What docstrings say may be given; empty where it is the annotation.
-    unit, range : str
-        The unit and the allowed range of a number; either may be empty.
-    chosen_for_error : bool
-        Whether ``simulate(error=...)`` chooses it.
-    limits_every_method : bool
-        Whether a comparison of methods gives it to each of them.
-    """
+    """The descriptor of an option."""
 
     name: str
     annotation: str
+    """The keyword, and how Python annotates what may be given."""
     sentence: str
+    """What it is, in reStructuredText."""
     default: Any = None
+    """What holds if it is not given."""
     if_none: str = ""
+    """What a run does where that is None."""
     type: str = ""
+    """What docstrings say may be given; empty where it is the annotation."""
     unit: str = ""
     range: str = ""
+    """The unit and the allowed range of a number; either may be empty."""
     chosen_for_error: bool = False
+    """Whether ``simulate(error=...)`` chooses it."""
     limits_every_method: bool = False
+    """Whether a comparison of methods gives it to each of them."""
 
 
 ERROR = RunOption(

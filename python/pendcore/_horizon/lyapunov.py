@@ -131,8 +131,7 @@ class LyapunovExponents:
         (ax,) = new_axes((6.4, 4.0)) if ax is None else (ax,)
         properties = {"color": theme_of(ax).ink, **line_properties}
         lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
-        ax.set_xlabel("t (s)")
-        ax.set_ylabel("finite-time Lyapunov exponents (1/s)")
+        ax.set(xlabel="t (s)", ylabel="finite-time Lyapunov exponents (1/s)")
         ax.axhline(0.0, color=theme_of(ax).quiet, linewidth=0.8, zorder=0)
         ax.margins(x=0)
         grid(ax)
@@ -259,13 +258,11 @@ def _exponents(found: dict[str, Any], since: float, n: int) -> LyapunovExponents
     if len(growth):
         growth = growth - growth[0]
     return LyapunovExponents(
-        t=found["t"],
+        **{name: found[name] for name in ("t", "status", "message")},
         growth=growth,
         since=since,
         q=found["states"][:, :n],
         qd=found["states"][:, n:],
-        status=found["status"],
-        message=found["message"],
         success=found["status"] == "finished",
         stats=Statistics(**found["statistics"]),
     )

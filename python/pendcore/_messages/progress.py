@@ -82,10 +82,6 @@ def close(report: Callable[[float], object] | None) -> None:
         report.close()
 
 
-def _unheard(fraction: float) -> None:
-    """Take what nobody wants to know."""
-
-
 @contextmanager
 def reporting(
     progress: Progress, what: str, count: int = 100, unit: str = "%"
@@ -93,6 +89,7 @@ def reporting(
     """Yield what takes the fraction done, and end its bar; see `callback`."""
     report = callback(progress, what, count, unit)
     try:
-        yield _unheard if report is None else report  # a list that is called is false while empty
+        # A list that is called is false while it is empty.
+        yield (lambda fraction: None) if report is None else report
     finally:
         close(report)

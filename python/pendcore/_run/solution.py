@@ -141,15 +141,7 @@ class Solution:
 
     @property
     def y_reached(self) -> Floats:
-        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s).
-
-        Examples
-        --------
-        >>> how = {"t_eval": [9.0], "max_steps": 5, "on_failure": "ignore"}
-        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 9), q0=0.5, **how)
-        >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
-        (0, '0.5 s', (4,))
-        """
+        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
         return self._run.y_reached
 
     def __call__(self, t: npt.ArrayLike) -> Floats:
