@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -41,28 +41,22 @@ class Members:
 
     def block(self, block: tuple[slice, ...]) -> Members:
         """Return the members of a block, in memory of their own."""
-        return replace(
-            self,
-            shape=tuple(one.stop - one.start for one in block),
-            q0=self.q0[block].copy(),
-            qd0=self.qd0[block].copy(),
-            vary={name: values[block].copy() for name, values in self.vary.items()},
-        )
+        shape = tuple(one.stop - one.start for one in block)
+        return self._picked(shape, lambda values: values[block].copy())
 
     def selected(self, places: npt.NDArray[np.intp]) -> Members:
         """Return the members at flat places, along one axis."""
         shape = self.shape or (1,)  # an ensemble without axes has one member
         where = np.unravel_index(places, shape)
-        n = self.q0.shape[-1:]
-        return replace(
-            self,
-            shape=places.shape,
-            q0=np.broadcast_to(self.q0, shape + n)[where],
-            qd0=np.broadcast_to(self.qd0, shape + n)[where],
-            vary={
-                name: np.broadcast_to(values, shape)[where] for name, values in self.vary.items()
-            },
+        axes = len(self.shape)
+        return self._picked(
+            places.shape, lambda x: np.broadcast_to(x, shape + x.shape[axes:])[where]
         )
+
+    def _picked(self, shape: Index, pick: Callable[[Floats], Floats]) -> Members:
+        """Return members of a shape, with what is picked of each array."""
+        vary = {name: pick(values) for name, values in self.vary.items()}
+        return replace(self, shape=shape, q0=pick(self.q0), qd0=pick(self.qd0), vary=vary)
 
 
 def members_of(

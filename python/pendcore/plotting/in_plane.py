@@ -26,7 +26,9 @@ def draw_path(asked: Request) -> list[Artist]:
     """Draw the path of the tip, m, and the chain: pale at the start, in its colour at the end."""
     t, q, _, _ = curve_of(asked.solution)
     places = asked.solution.scene.positions(t, q)
-    axis = one_axes(asked.ax, _fitting(places), asked.new_figure)
+    width, height = np.ptp(places.reshape(-1, 2), axis=0)  # m, which are to fit to scale
+    tall = float(np.clip(height / max(width, 1e-300), 0.3, 1.3)) * (_SIZE[0] - 0.8) + 1.1
+    axis = one_axes(asked.ax, (_SIZE[0], tall), asked.new_figure)
     theme, count = theme_of(axis), _count(axis)
     color = theme.run(count) if count else theme.link(q.shape[1] - 1)
     hidden = "_" * bool(count or asked.label)
@@ -106,13 +108,6 @@ def _within_a_turn(angles: Floats) -> Floats:
 def _count(axis: Axes) -> int:
     """Return how many curves of runs are on the axes already."""
     return sum(line.get_gid() == _GID for line in axis.lines)
-
-
-def _fitting(places: Floats) -> tuple[float, float]:
-    """Return the size of a figure, inches, into which places (..., 2), m, fit to scale."""
-    width, height = np.ptp(places.reshape(-1, 2), axis=0)
-    across, down = _SIZE[0] - 0.8, float(np.clip(height / max(width, 1e-300), 0.3, 1.3))
-    return _SIZE[0], across * down + 1.1
 
 
 def _draw(axis: Axes, t: Floats, xy: Floats, asked: Request, ours: dict[str, Any]) -> list[Artist]:

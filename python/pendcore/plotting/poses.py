@@ -109,11 +109,8 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     for i, (angle, of_link) in enumerate(zip(q, forces, strict=True)):
         ends = pose[i : i + 2]
         alongs = arrows_of(np.array([one.force for one in of_link]), largest, reach)
-        drawn = [
-            (one, along, _would_lie_on_link(one, along, ends))
-            for one, along in zip(of_link, alongs, strict=True)
-            if along.any()
-        ]
+        pairs = [pair for pair in zip(of_link, alongs, strict=True) if pair[1].any()]
+        drawn = [(one, along, _would_lie_on_link(one, along, ends)) for one, along in pairs]
         free = [one.at - along if arrives else one.at + along for one, along, arrives in drawn]
         across = np.array([*ends, *free])[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])

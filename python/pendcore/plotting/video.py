@@ -150,16 +150,14 @@ def _write_mp4(
         raise RuntimeError(f"ffmpeg ended with {process.returncode}: {last or 'it says nothing'}")
 
 
-def _write_gif(
-    samples: Iterator[Pixels], pictures: Iterator[Pixels], file: Path, fps: float
-) -> None:
+def _write_gif(samples: Iterator[Pixels], frames: Iterator[Pixels], file: Path, fps: float) -> None:
     """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
     from PIL.Image import Dither, fromarray
 
     palette = _palette(samples)
     first, *rest = (
-        fromarray(picture[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
-        for picture in pictures
+        fromarray(frame[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
+        for frame in frames
     )
     ticks = np.round(np.arange(len(rest) + 2) * 1000 / fps / _GIF_TICK)
     durations = (_GIF_TICK * np.diff(ticks)).astype(int).tolist()

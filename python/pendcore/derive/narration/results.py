@@ -155,10 +155,8 @@ def energy(page: Page) -> None:
     energies = zip("TV", page.derivation.energies_by_definitions, strict=True)
     powers = page.derivation.powers_with(page.equations.forces[0])
     names = [page.s.symbol(f"P{i}", f"P_{{{i}}}") for i in range(1, len(powers) + 1)]
-    told = (
-        f"${page.s.latex(name)}$ is that of the {_named(effect)}"
-        for name, effect in zip(names, powers, strict=True)
-    )
+    pairs = zip(names, powers, strict=True)
+    told = (f"${page.s.latex(name)}$ is that of the {_named(effect)}" for name, effect in pairs)
     text = "The motion conserves the energy; no step above has used this."
     if names:
         text = "Only the effects change the energy, at the rate of the sum of their powers: "

@@ -59,7 +59,7 @@ def _written(
     engine = conversion.latex_engine()
     writers: dict[str, Callable[[Path], object]] = {}
     for name, document in documents.items():
-        writers[f"{name}.md"] = partial(conversion.markdown, document)
+        writers[f"{name}.md"] = partial(Path.write_text, data=document.markdown(), encoding="utf-8")
         if shutil.which("pandoc"):
             writers[f"{name}.html"] = partial(conversion.page, document)
             writers |= {f"{name}.pdf": partial(conversion.pdf, document, engine)} if engine else {}

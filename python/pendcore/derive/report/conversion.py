@@ -60,11 +60,6 @@ def latex_engine() -> str | None:
     return next((engine for engine in ENGINES if shutil.which(engine)), None)
 
 
-def markdown(document: Document, path: Path) -> None:
-    """Write a document as Markdown."""
-    path.write_text(document.markdown(), encoding="utf-8")
-
-
 def page(document: Document, path: Path) -> None:
     """Write a document as one page of HTML; raise a RuntimeError if pandoc fails."""
     style = f"<style>\n{css_variables(when_dark='')}{STYLE.read_text('utf-8')}</style>\n"
