@@ -10,6 +10,7 @@ from __future__ import annotations
 from pendcore._cases.whole_file import whole_file
 from pendcore._messages.arguments import (
     Floats,
+    at_least,
     did_you_mean,
     finite_array,
     in_a_row,
@@ -36,6 +37,7 @@ __all__ = [
     "PendcoreWarning",
     "Progress",
     "as_json",
+    "at_least",
     "beside",
     "did_you_mean",
     "drawing",

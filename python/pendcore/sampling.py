@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._messages.arguments import Floats, real_array, whole_number
+from pendcore._messages.arguments import Floats, at_least, real_array, whole_number
 
 Size = int | tuple[int, ...]
 
@@ -96,9 +96,7 @@ def _require_to_fit(shape: tuple[int, ...], **given: Floats) -> None:
 
 def _shares(size: Size, seed: int) -> Floats:
     """Return numbers from 0 to below 1: each takes one output of the generator."""
-    key = whole_number("seed", seed)
-    if key < 0:
-        raise ValueError(f"seed = {seed}: must be >= 0")
+    key = at_least("seed", seed, 0)
     drawn: Floats = np.random.Generator(np.random.Philox(key=key)).random(_shape(size))
     return drawn
 

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from pendcore import methods
 from pendcore._accuracy import tuning
 from pendcore._accuracy.estimate import (
     MORE_STEPS,
@@ -28,6 +29,7 @@ from pendcore._accuracy.method_choice import (
 from pendcore._accuracy.rounding import moved
 from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
+from pendcore._messages.progress import part_of
 from pendcore._messages.warning import warn
 from pendcore._run.accuracy import DEFECT, Accuracy, Outcome, Paid
 from pendcore._run.call import Choice, Start, resumed, run, silent
@@ -35,13 +37,6 @@ from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.solution import Solution
 from pendcore._run.work import correction_work, series_work
 from pendcore._scene.effect_description import Description
-from pendcore.methods import (
-    TIGHTEST,
-    TIGHTEST_IMPLICIT,
-    error_over_rtol,
-    implicit_method,
-    pair_of,
-)
 from pendcore.options import atol_beside
 
 _ADVANCE = 0.35
@@ -123,7 +118,7 @@ class Trials:
 
     @property
     def tightest(self) -> float:
-        return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
+        return methods.TIGHTEST_IMPLICIT if self.is_stiff else methods.TIGHTEST
 
     @property
     def tightest_trial(self) -> TrialRun:
@@ -142,18 +137,19 @@ class Trials:
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
         if self.is_stiff:
-            return implicit_method()
-        return pair_of(self.strategy.method or cheapest(self.start, scale / tuning.FOR_BOTH))
+            return methods.implicit_method()
+        method = self.strategy.method or cheapest(self.start, scale / tuning.FOR_BOTH)
+        return methods.pair_of(method)
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Make a run with all the options that the user gave."""
-        rtol = rounded(scale / error_over_rtol(leading(method)), self.tightest)
+        rtol = rounded(scale / methods.error_over_rtol(leading(method)), self.tightest)
         options = self.options
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
         correction = None
         if not self.is_stiff:
-            scale = rtol * error_over_rtol(leading(method))
+            scale = rtol * methods.error_over_rtol(leading(method))
             correction = self.strategy.correction(self.start, scale)
         trial = self._run(self.start, method, rtol, options, correction)
         self.trials.append(trial)
@@ -179,11 +175,11 @@ class Trials:
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Make a run that is better than a trial, with other steps, constants and start."""
-        method = implicit_method()
+        method = methods.implicit_method()
         if not self.is_stiff:
             method = same_or_other(trial.method, trial.solution.stats)
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
-        rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
+        rtol = rounded(scale / methods.error_over_rtol(leading(method)), tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["events"])
         options = {
             "t_eval": None if ends_anywhere else second_times(trial.solution),
@@ -299,7 +295,7 @@ class Trials:
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
-        scale = rtol * error_over_rtol(leading(method))
+        scale = rtol * methods.error_over_rtol(leading(method))
         trial = TrialRun(method, rtol, scale, work, solution, correction)
         self.paid.append(trial)
         self._done += _ADVANCE * (1 - self._done)
@@ -309,7 +305,6 @@ class Trials:
         return max(self.time_limit - (monotonic() - self.began), 1e-6)
 
     def _progress(self) -> Callable[[float], object] | bool:
-        report, done = self.report, self._done
-        if report is None:
+        if self.report is None:
             return False
-        return lambda fraction: report(done + _ADVANCE * (1 - done) * fraction)
+        return part_of(self.report, self._done, _ADVANCE * (1 - self._done))

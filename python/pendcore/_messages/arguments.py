@@ -99,6 +99,14 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
     return whole
 
 
+def at_least(name: str, value: Any, least: int) -> int:
+    """Return a whole number from ``least`` on as an int."""
+    whole = whole_number(name, value)
+    if whole < least:
+        raise ValueError(f"{name} = {whole}: must be >= {least}")
+    return whole
+
+
 def flag(name: str, value: object) -> bool:
     """Return a bool of Python or NumPy as one of Python."""
     if not isinstance(value, bool | np.bool_):
@@ -172,9 +180,8 @@ def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     try:
         array = np.asarray(value)
     except ValueError:
-        raise ValueError(
-            f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
-        ) from None
+        told = f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
+        raise ValueError(told) from None
     if array.dtype.kind == "O" and all(type(x) is int for x in array.flat):
         try:  # integers beyond 64 bits
             array = array.astype(np.float64)
@@ -226,9 +233,8 @@ def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
     """Return an array whose last axis runs over the n links."""
     array = finite_array(name, value, unit)
     if array.ndim == 0 or array.shape[-1] != n:
-        raise ValueError(
-            f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
-        )
+        wanted = f"must be (..., {n}), one value per link ({unit})"
+        raise ValueError(f"{name}: shape {array.shape}: {wanted}")
     return array
 
 

@@ -70,9 +70,8 @@ def callback(
     if progress is False:
         return None
     if not callable(progress):
-        raise TypeError(
-            f"progress = {progress!r}: must be None, True, False, or a function of a fraction"
-        )
+        wanted = "must be None, True, False, or a function of a fraction"
+        raise TypeError(f"progress = {progress!r}: {wanted}")
     return progress
 
 
@@ -80,6 +79,13 @@ def close(report: Callable[[float], object] | None) -> None:
     """End the bar, where what was called is one of ours."""
     if isinstance(report, ProgressBar):
         report.close()
+
+
+def part_of(
+    report: Callable[[float], object], begin: float, share: float
+) -> Callable[[float], object]:
+    """Return what reports the progress of a part of a whole, which begins there."""
+    return lambda fraction: report(begin + share * fraction)
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
-from pendcore.messages import positive
+from pendcore.messages import at_least, positive
 from pendcore.options import OPTIONS
 
 HELP = "measure what accuracy costs on a case: errors and times of every method"
@@ -46,9 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if args.repeats < 1:
-        raise UsageError(f"--repeats = {args.repeats}: must be >= 1")
     with blamed_on_usage():
+        at_least("--repeats", args.repeats, 1)
         positive("--error", args.error, "of the total length")
         positive("--time-limit", args.time_limit, "s")
         case = arguments.case_of(args)

@@ -114,8 +114,8 @@ def accuracy_cost(
         tolerances=[(r, atol_beside(r) if absolute is None else absolute) for r in tolerances],
         steps=None if step is None else _positive("step", step, "s"),
         limits=limits,
-        points=_at_least(2, "points", points),
-        repeats=_at_least(1, "repeats", repeats),
+        points=messages.at_least("points", points, 2),
+        repeats=messages.at_least("repeats", repeats, 1),
         time_limit=messages.time_limit_of(time_limit),
     )
     for message in scene.run_warnings(angles, span):
@@ -129,13 +129,6 @@ def accuracy_cost(
         messages.hand_over(stop, accuracy_cost=measurement.result())
         raise
     return measurement.result()
-
-
-def _at_least(least: int, name: str, value: int) -> int:
-    whole = messages.whole_number(name, value)
-    if whole < least:
-        raise ValueError(f"{name} = {whole}: must be >= {least}")
-    return whole
 
 
 def _positive(name: str, values: npt.ArrayLike, unit: str, below: float = inf) -> list[float]:
