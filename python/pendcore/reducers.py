@@ -75,9 +75,8 @@ class FirstEvent(Reducer):
 
     def __post_init__(self) -> None:
         if not isinstance(self.event, Event):
-            raise TypeError(
-                f"event = {self.event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
-            )
+            wanted = "must be an event, such as pc.events.LinkAngle(1, 0.0)"
+            raise TypeError(f"event = {self.event!r}: {wanted}")
 
     @staticmethod
     def largest_difference(one: Floats, two: Floats) -> Floats:

@@ -30,8 +30,7 @@ def kept_times(solution: Solution) -> Floats:
 
 
 def _distinct(t: Floats) -> Floats:
-    distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
-    return distinct
+    return np.asarray(t[np.append(True, np.diff(t) != 0)[: len(t)]])
 
 
 def times_within_steps(runs: Iterable[Solution]) -> Floats:
@@ -89,5 +88,4 @@ def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
 def reached(solution: Solution, t: Floats) -> npt.NDArray[np.bool_]:
     """Return at which of the times (n_t,), s, a run was."""
     start, end = solution._run.arguments["t_start"], solution._run.t_reached
-    there: npt.NDArray[np.bool_] = (min(start, end) <= t) & (t <= max(start, end))
-    return there
+    return np.asarray((min(start, end) <= t) & (t <= max(start, end)))

@@ -16,17 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from pendcore._ensemble.about import (
-    BLOCK,
-    CASE,
-    KEEP,
-    SHAPE,
-    VARY,
-    VERSION,
-    about,
-    read_about,
-    read_sizes,
-)
+from pendcore._ensemble import about
 from pendcore._ensemble.blocks import Block, Blocks, require_few_blocks, size_of
 from pendcore._ensemble.members import Index, Members, member_axes, members_from
 from pendcore._ensemble.new_store import create, named, zarr_module
@@ -37,9 +27,9 @@ from pendcore._ensemble.stored_array import StoredArray, file_of, is_there, move
 from pendcore._ensemble.stored_metadata import DOCUMENT, attributes_of, axes_of
 
 _OTHER = {
-    CASE: "another scene, or other options or events",
-    KEEP: "other reducers",
-    VARY: "other parameters that vary",
+    about.CASE: "another scene, or other options or events",
+    about.KEEP: "other reducers",
+    about.VARY: "other parameters that vary",
 }
 
 
@@ -225,22 +215,23 @@ def opened(path: Path, mode: str = "r") -> Store:
 def _opened(path: Path, mode: str) -> Store:
     place = path.resolve()  # whatever becomes the current folder
     told = attributes_of(place)
-    shape, block_shape = read_sizes(told, SHAPE, 0), read_sizes(told, BLOCK, 1)
+    shape = about.read_sizes(told, about.SHAPE, 0)
+    block_shape = about.read_sizes(told, about.BLOCK, 1)
     if len(shape) != len(block_shape):
-        raise ValueError(f"{BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
+        raise ValueError(f"{about.BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
     blocks = Blocks(shape, block_shape)
     require_few_blocks(blocks)
     t_eval = _read(place, "time", {"time": None})[1] if (place / "time").exists() else None
-    scene, request = read_about(told, t_eval)
+    scene, request = about.read_about(told, t_eval)
     n, axes = len(scene.links), member_axes(shape)
     lengths: dict[str, int | None] = dict(zip(axes, shape, strict=True))
     found = {name: _read(place, name, lengths | {"link": n}) for name in ("q0", "qd0")}
-    found |= {name: _read(place, name, lengths) for name in told[VARY]}
+    found |= {name: _read(place, name, lengths) for name in told[about.VARY]}
     zarr_arrays: dict[str, Any] = {}
     for one in request.variables(n):
         name = PureWindowsPath(one.name)  # it knows the separators of every system
         if name.drive or name.root or ".." in name.parts:
-            raise ValueError(f"{KEEP}: {one.name!r} is no name of a reducer")
+            raise ValueError(f"{about.KEEP}: {one.name!r} is no name of a reducer")
         own = lengths | dict(zip(one.labels, one.shape, strict=True))
         chunk = [max(size, 1) for size in (*block_shape, *one.shape)]
         axes_of(place, one.name, np.dtype(one.dtype).name, own, chunk)
@@ -261,12 +252,12 @@ def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[lis
 def continued(path: Path, members: Members, request: Request) -> Store:
     """Open a store to go on with it. It must be that of the same ensemble and version."""
     store = opened(path, "r+")
-    told = about(members.scene, list(members.vary), request)
+    told = about.about(members.scene, list(members.vary), request)
     for name, value in told.items():
         there = store.told[name]
         if there != value:
-            what = f"pendcore {there}, not {value}" if name == VERSION else _OTHER[name]
-            if name == CASE:
+            what = f"pendcore {there}, not {value}" if name == about.VERSION else _OTHER[name]
+            if name == about.CASE:
                 old, new = there.splitlines(), value.splitlines()
                 was = next((line for line in old if line not in new), "nothing")
                 what += f" ({was}, and now {next((x for x in new if x not in old), 'nothing')})"

@@ -26,8 +26,7 @@ class StoredArray:
     @property
     def shape(self) -> tuple[int, ...]:
         """Return the shape, without reading."""
-        shape: tuple[int, ...] = self.array.shape
-        return shape
+        return tuple(self.array.shape)
 
     @property
     def dtype(self) -> np.dtype[Any]:

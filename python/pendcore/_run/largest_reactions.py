@@ -188,8 +188,7 @@ class _Search:
             k = int(np.where(jumps[:, i], limit[:, i], -inf).argmax())
             if jumps[k, i]:
                 self.take_one(i, float(t[k, 2]), float(limit[k, i]), just_before=True)
-        found: Floats = np.where(jumps, limit, after)
-        return found
+        return np.asarray(np.where(jumps, limit, after))
 
     def _polish(self, times: Floats, grid: Floats) -> None:
         """Refine the peaks of a grid of times (m, k) and sizes (m, k, n)."""
@@ -221,5 +220,4 @@ def _may_exceed(sizes: Floats, best: Floats) -> npt.NDArray[np.bool_]:
     beside = np.pad(sizes, ((0, 0), (1, 1)), constant_values=-inf)
     is_peak = (sizes >= beside[:, :-2]) & (sizes >= beside[:, 2:]) & np.isfinite(sizes)
     rise = np.where(is_peak, sizes - least, 0.0)
-    may: npt.NDArray[np.bool_] = (rise > ROUNDING * sizes) & (sizes + rise > best[:, None])
-    return may
+    return np.asarray((rise > ROUNDING * sizes) & (sizes + rise > best[:, None]))

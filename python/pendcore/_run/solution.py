@@ -711,8 +711,7 @@ class Solution:
         ax : Axes or array of Axes, optional
             One axes; for angles, rates and phase also one for each link, for reactions one for each
             joint, for energy as many as it has panels. Default: a new figure of pyplot's, which is
-            not shown.
-            Where curves are drawn already, the next ones are dashed.
+            not shown. Where curves are drawn already, the next ones are dashed.
         label : str, optional
             Name of this solution in the legend.
         horizon : float, optional

@@ -74,9 +74,8 @@ def tuple_of(
         raise TypeError(f"{noun}s = {values!r}: {remedy}{alone}") from None
     for i, value in enumerate(values, start=1):
         if isinstance(value, type) and issubclass(value, kind):
-            raise TypeError(
-                f"{noun} {i} = {value.__name__}: must be a {_AN_OBJECT[noun]}; got the class itself"
-            )
+            wanted = f"must be a {_AN_OBJECT[noun]}; got the class itself"
+            raise TypeError(f"{noun} {i} = {value.__name__}: {wanted}")
         if not isinstance(value, kind):
             if callable(value) and not isinstance(value, type) and noun in _OF_FUNCTIONS:
                 remedy = f"is a function: give {_OF_FUNCTIONS[noun]}"

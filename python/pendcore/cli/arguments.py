@@ -12,7 +12,7 @@ from pendcore.cli.usage import UsageError
 
 def add_case(parser: argparse.ArgumentParser) -> None:
     """Add the argument for a case."""
-    told = "default: the textbook's case"
+    told = "what to simulate; default: the textbook's case"
     parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help=told)
 
 

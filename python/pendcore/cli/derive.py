@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
-from collections.abc import Callable
 from typing import Any
 
 import pendcore
@@ -71,14 +70,8 @@ def execute(args: argparse.Namespace) -> int:
 def _text(derivation: Any, args: argparse.Namespace) -> str:
     if args.to == "octave":  # the function is called what its file is called
         return str(derivation.to_octave(args.out.stem if args.out else "RR"))
-    made: dict[str, Callable[[], str]] = {
-        "text": derivation.__str__,
-        "latex": derivation.latex,
-        "inline": derivation.to_octave_inline,
-        "python": derivation.to_python,
-        "cpp": derivation.to_cpp,
-    }
-    return made[args.to]()
+    of = {"inline": "to_octave_inline", "python": "to_python", "cpp": "to_cpp", "latex": "latex"}
+    return str(getattr(derivation, of[args.to])() if args.to in of else derivation)
 
 
 def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:

@@ -155,7 +155,7 @@ def _with_parameters(case: Case, given: list[str]) -> Case:
     """
     starts: dict[str, Any] = {"q0": list(case.q0), "qd0": list(case.qd0)}
     of_scene: dict[str, float] = {}
-    names: set[str] = set()
+    names, n = set[str](), len(case.q0)
     for one in given:
         name, equals, text = one.partition("=")
         if name in names:
@@ -175,10 +175,8 @@ def _with_parameters(case: Case, given: list[str]) -> Case:
             raise UsageError(f"--parameters {one}: must say of which link, such as {name}[1]")
         if start is None:
             of_scene[name] = value
-        elif not 1 <= int(start[2]) <= len(case.q0):
-            raise UsageError(
-                f"--parameters {one}: the scene has {len(case.q0)} links, counted from 1"
-            )
+        elif not 1 <= int(start[2]) <= n:
+            raise UsageError(f"--parameters {one}: the scene has {n} links, counted from 1")
         else:
             starts[start[1]][int(start[2]) - 1] = value
     return replace(case, scene=case.scene.with_parameters(of_scene), **starts)

@@ -54,8 +54,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "not_simulated": [absence._asdict() for absence in case.scene.not_simulated()],
         "version": build.version,
     }
-    plain: dict[str, Any] = as_json(found)
-    return plain
+    return dict(as_json(found))
 
 
 def text(found: dict[str, Any]) -> str:

@@ -31,7 +31,7 @@ example:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
-    told = "error of an angle up to which a run counts as right"
+    told = "error of an angle, rad, up to which a run counts as right"
     add_number(parser, "--limit", "RAD", told, LIMIT)
     add_number(parser, "--time-limit", "S", "seconds of computing for the second runs")
     add_flags(parser, json="print the same as JSON")

@@ -57,6 +57,5 @@ def _require_writable(folder: Path) -> None:
     try:
         TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise UsageError(
-            f"{folder}: cannot be written: {error.strerror}: choose another folder"
-        ) from None
+        told = f"{folder}: cannot be written: {error.strerror}: choose another folder"
+        raise UsageError(told) from None

@@ -155,8 +155,7 @@ class AccuracyCost:
         """Return everything as JSON can hold it: infinite numbers become None."""
         best = [(p.method, p.rtol, p.step) for p in self.pareto()]
         points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
-        plain: dict[str, Any] = as_json(asdict(self) | {"points": points})
-        return plain
+        return dict(as_json(asdict(self) | {"points": points}))
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
         """Return the same as JSON text, and write it to a file if one is named."""

@@ -222,10 +222,8 @@ class Measurement:
             failure = too_long if solution.status == "time_limit" else solution.message
         elif error == inf:
             failure = "did not get to the end with finite angles"
-        stats = solution.stats
-        one.point = replace(
-            one.point, error=error, nfev=stats.nfev, accepted=stats.accepted, failure=failure
-        )
+        counts = {name: getattr(solution.stats, name) for name in ("nfev", "accepted")}
+        one.point = replace(one.point, error=error, failure=failure, **counts)
         one.seconds.append(seconds)
 
     def _repeat(self) -> None:

@@ -123,8 +123,7 @@ class Explanation:
             "effects": [repr(effect) for effect in self.scene.effects],
         }
         own = (one.name for one in fields(self) if one.name != "scene")
-        plain: dict[str, Any] = as_json(told | {name: getattr(self, name) for name in own})
-        return plain
+        return dict(as_json(told | {name: getattr(self, name) for name in own}))
 
     def _repr_html_(self) -> str:
         costs = [[x, "" if n is None else str(n), f"{ns:.0f}"] for x, n, ns in self.costs]

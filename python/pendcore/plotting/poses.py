@@ -133,8 +133,7 @@ def arrows_of(forces: Floats, full: float, reach: float) -> Floats:
     """
     sizes = np.hypot(forces[..., :1], forces[..., 1:])
     lengths = np.clip(_LONGEST * sizes / (full or 1.0), _SHORTEST, _LONGEST) * reach
-    arrows: Floats = forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full)
-    return arrows
+    return np.asarray(forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full))
 
 
 def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:

@@ -58,9 +58,8 @@ class Choices:
         if self.horizon is not None:
             positive("horizon", self.horizon, "rad")
         if self.trace is not None and not number("trace", self.trace, "s") >= 0:
-            raise ValueError(
-                f"trace = {float(self.trace)}: must be >= 0 (s); inf shows the whole path"
-            )
+            wanted = "must be >= 0 (s); inf shows the whole path"
+            raise ValueError(f"trace = {float(self.trace)}: {wanted}")
 
 
 def animate(

@@ -89,9 +89,8 @@ def _even_size(given: tuple[int, int]) -> tuple[int, int]:
     pixels = np.asarray(given)
     is_whole = pixels.shape == (2,) and pixels.dtype.kind in "iu"
     if not (is_whole and (pixels % 2 == 0).all() and 64 <= pixels.min() <= pixels.max() <= 8192):
-        raise ValueError(
-            f"size = {given!r}: must be (width, height) in pixels, both even, and 64 to 8192"
-        )
+        wanted = "must be (width, height) in pixels, both even, and 64 to 8192"
+        raise ValueError(f"size = {given!r}: {wanted}")
     return int(pixels[0]), int(pixels[1])
 
 

@@ -79,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ends, told = ("X0", "X1", "Y0", "Y1"), "other ends of x and y"
     parser.add_argument("--zoom", type=float, nargs=4, metavar=ends, help=told)
     told = "begin with pixels that are 2^LEVELS times as large, and divide those that differ from "
-    add_number(parser, "--refine", "LEVELS", f"{told}a neighbour", 0, int)
+    add_number(parser, "--refine", "LEVELS", f"{told}a neighbour; 0 computes all", 0, int)
     add_flags(parser, no_trust="leave out the second runs that confirm pixels")
     add_number(parser, "--workers", "N", "threads; default: all processors", kind=int)
 

@@ -37,5 +37,4 @@ def is_forbidden(
     i = event.link - 1
     least = -np.abs(weights).sum() + abs(weights[i]) - weights[i] * np.sin(event.value)
     scale = np.abs(kinetic) + np.abs(potential) + np.abs(weights).sum()
-    found: npt.NDArray[np.bool_] = least - (kinetic + potential) > MARGIN * scale
-    return found
+    return np.asarray(least - (kinetic + potential) > MARGIN * scale)
