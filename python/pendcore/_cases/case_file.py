@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, fields
 from math import radians
 from pathlib import Path
@@ -130,7 +130,7 @@ def _tables(text: TomlText, noun: str) -> list[dict[str, Any]]:
 
 def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
     place = ("effect", i)
-    kind = _kind(text, place, table, EFFECT_KEYS, KINDS)
+    kind = _kind(text, place, table)
     where = f"effect {i + 1} ({kind}): "
     for parameter in KINDS[kind].description.parameters:
         value = table.get(parameter.name)
@@ -146,7 +146,7 @@ def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
 
 def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
     place = ("event", i)
-    kind = _kind(text, place, table, EVENT_KEYS, EVENT_KINDS)
+    kind = _kind(text, place, table)
     for f in fields(EVENT_KINDS[kind]):
         if f.default is MISSING and f.name not in table:
             raise text.error(place, f"event {i + 1} ({kind}) needs {f.name}")
@@ -159,29 +159,24 @@ def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
         raise text.error(at, f"event {i + 1} ({kind}): {complaint}") from None
 
 
-def _kind(
-    text: TomlText,
-    place: tuple[str, int],
-    table: dict[str, Any],
-    keys: Mapping[str, Sequence[str]],
-    kinds: Collection[str],
-) -> str:
+def _kind(text: TomlText, place: tuple[str, int], table: dict[str, Any]) -> str:
     """Take the kind out of the table of an effect or event, and check its keys."""
     noun, i = place
+    keys = EFFECT_KEYS if noun == "effect" else EVENT_KEYS
     kind = table.pop("kind", None)
     if kind is None:
         raise text.error(place, f"{noun} {i + 1} needs kind: {', '.join(keys)}")
     if not isinstance(kind, str) or kind not in keys:
-        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(noun, kind, keys, kinds)}")
+        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(noun, kind, keys)}")
     text.check_keys(place, _ANYWHERE | {noun: keys[kind]})
     return kind
 
 
-def _remedy(noun: str, kind: object, keys: Iterable[str], kinds: Collection[str]) -> str:
+def _remedy(noun: str, kind: object, keys: Iterable[str]) -> str:
     """Return what to write for a kind that cannot stand in a file."""
     if not isinstance(kind, str):
         return f"must be one of {', '.join(keys)}"
-    if kind in kinds:
+    if kind in (KINDS if noun == "effect" else EVENT_KINDS):
         where = "to the scene" if noun == "effect" else "to events"
         return f"is a function, which a file cannot hold: add it {where} in Python"
     return f"is no {noun}: {did_you_mean(kind, keys)}"

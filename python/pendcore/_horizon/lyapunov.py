@@ -234,22 +234,15 @@ def lyapunov(
     return result
 
 
-def lyapunov_of(
-    solution: Solution,
-    count: int | None,
-    transient: float,
-    t_eval: npt.ArrayLike | None,
-    progress: Progress,
-) -> LyapunovExponents:
+def lyapunov_of(solution: Solution, **how: Any) -> LyapunovExponents:
     """Compute the exponents of a solution's motion to its end, at its tolerances."""
     asked = solution._run.arguments
     if solution._run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
         solution.scene, (asked["t_start"], solution._run.t_reached), asked["q0"], asked["qd0"],
-        count=count, transient=transient, rtol=float(np.min(asked["rtol"])),
-        atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
-        progress=progress,
+        rtol=float(np.min(asked["rtol"])), atol=float(np.min(asked["atol"])),
+        max_step=asked["max_step"], **how,
     )  # fmt: skip
 
 

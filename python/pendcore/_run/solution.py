@@ -508,7 +508,8 @@ class Solution:
         """
         from pendcore._horizon.lyapunov import lyapunov_of
 
-        return lyapunov_of(self, count, transient, t_eval, progress)
+        how = {"count": count, "transient": transient, "t_eval": t_eval, "progress": progress}
+        return lyapunov_of(self, **how)
 
     def with_dense_output(self) -> Solution:
         """Return the run with a state at any time; one that kept none is run again, to the bit.

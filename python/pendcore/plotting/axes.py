@@ -152,14 +152,11 @@ def require_name(what: object) -> None:
 
 
 def whole_names(
-    plot: Callable[..., Any],
-    artist: type[Artist],
-    given: dict[str, Any],
-    others: Sequence[str] = (),
+    plot: Callable[..., Any], artist: type[Artist], given: dict[str, Any], more: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Return properties of what a method draws by their whole names.
 
-    TypeError for one that neither the artist has nor matplotlib takes besides (``others``).
+    TypeError for one that neither the artist has nor matplotlib takes besides (``more``).
     """
     from matplotlib.artist import ArtistInspector
     from matplotlib.cbook import normalize_kwargs
@@ -167,7 +164,7 @@ def whole_names(
     whole: dict[str, Any] = normalize_kwargs(given, artist)
     _, *own, _ = signature(plot).parameters
     ours = {"array", "data", "xdata", "ydata", "figure"}
-    known = {*ArtistInspector(artist).get_setters(), *others} - ours
+    known = {*ArtistInspector(artist).get_setters(), *more} - ours
     require_known(plot.__qualname__, whole, [*own, *sorted(known)])
     return whole
 
