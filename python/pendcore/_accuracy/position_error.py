@@ -19,9 +19,8 @@ low degree."""
 
 def time_grid(t_start: float, t_end: float, points: int = 101) -> Floats:
     """Return evenly spaced times of a run, s, (points,): both ends to the last bit, none twice."""
-    return _distinct(
-        np.linspace(t_start, t_end, points)
-    )  # a span of a few last bits has fewer times than points
+    # A span of a few last bits has fewer times than points.
+    return _distinct(np.linspace(t_start, t_end, points))
 
 
 def kept_times(solution: Solution) -> Floats:

@@ -60,7 +60,10 @@ class Members:
 
 
 def members_of(
-    scene: Scene, q0: npt.ArrayLike, qd0: npt.ArrayLike, vary: Mapping[str, npt.ArrayLike] | None
+    scene: Scene,
+    q0: npt.ArrayLike,
+    qd0: npt.ArrayLike,
+    vary: Mapping[str, npt.ArrayLike] | None,
 ) -> Members:
     """Return the members that starts and parameters make together, by NumPy's broadcasting."""
     n = len(scene.links)

@@ -123,7 +123,11 @@ class Energy:
 
 
 def energy_over(
-    scene: Scene, asked: Mapping[str, Any], t: Floats, states: Floats, entries: Mapping[str, Floats]
+    scene: Scene,
+    asked: Mapping[str, Any],
+    t: Floats,
+    states: Floats,
+    entries: Mapping[str, Floats],
 ) -> Energy:
     """Return the energies of states (n_t, 2n) of a run, and its ledger where it has entries.
 

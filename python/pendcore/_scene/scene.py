@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._messages.arguments import (
@@ -230,7 +230,7 @@ class Scene:
             links[i] = links[i].replace(**fields)
         return type(self)(links=links, gravity=gravity, effects=effects)
 
-    def accelerations(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike) -> Floats:
+    def accelerations(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Angular accelerations of the links: the right-hand side that is integrated.
 
         A law that is smooth only in pieces, such as dry friction, is on the side that a forward run
@@ -268,7 +268,9 @@ class Scene:
         lead, states = self._broadcast(t, q=q, qd=qd)
         return self._compiled.accelerations(*states).reshape(*lead, len(self.links))
 
-    def jacobian(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike) -> tuple[Floats, Floats]:
+    def jacobian(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike
+    ) -> tuple[Floats, Floats]:
         """Derivatives of the `accelerations` by the angles and by the rates, to the last bits.
 
         The arguments are as in `accelerations`, and so is the side of a law that is smooth only in
@@ -294,13 +296,13 @@ class Scene:
 
     def linearize(
         self,
-        q: ArrayLike,
-        qd: ArrayLike = 0.0,
+        q: npt.ArrayLike,
+        qd: npt.ArrayLike = 0.0,
         t: float = 0.0,
         *,
         inputs: Iterable[int | str] = (),
         outputs: Iterable[str] | None = None,
-        torques: ArrayLike | None = None,
+        torques: npt.ArrayLike | None = None,
     ) -> Linearization:
         """The motion close to a state, as the linear system of a controller.
 
@@ -376,7 +378,9 @@ class Scene:
         C, D, values = linearization.output_rows(system, lengths, ends, ends_by, wanted)
         return replace(system, C=C, D=D, outputs_there=values, outputs=wanted)
 
-    def inverse_dynamics(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Floats:
+    def inverse_dynamics(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike
+    ) -> Floats:
         """Torques in the joints that give these accelerations, N m, (..., n).
 
         They come beside what the effects do. No lock or stop pushes, and a joint at rest has no dry
@@ -391,7 +395,7 @@ class Scene:
         lead, states = self._broadcast(t, q=q, qd=qd, qdd=qdd)
         return self._compiled.inverse_dynamics(*states).reshape(*lead, len(self.links))
 
-    def trim(self, q: ArrayLike, t: float = 0.0, *, inputs: Iterable[int | str]) -> Floats:
+    def trim(self, q: npt.ArrayLike, t: float = 0.0, *, inputs: Iterable[int | str]) -> Floats:
         """Torques in some joints that hold these angles at rest, N m, one for each of ``inputs``.
 
         Parameters
@@ -426,7 +430,7 @@ class Scene:
         (time,) = vector("t", t, 1, "s")
         return self._compiled.trim(time, numbers("q", q, "rad", len(self.links)), joints)
 
-    def positions(self, t: ArrayLike, q: ArrayLike) -> Floats:
+    def positions(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Pivot, joints and tip, m, (..., n+1, 2): x right, y down; a driven pivot moves.
 
         ``t`` and ``q`` are as in `accelerations`.
@@ -442,7 +446,7 @@ class Scene:
         lead, states = self._broadcast(t, q=q)
         return self._compiled.positions(*states).reshape(*lead, len(self.links) + 1, 2)
 
-    def velocities(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike) -> Floats:
+    def velocities(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Velocities of pivot, joints and tip, m/s, (..., n+1, 2): x right, y down.
 
         The arguments are as in `accelerations`.
@@ -458,7 +462,7 @@ class Scene:
         lead, states = self._broadcast(t, q=q, qd=qd)
         return self._compiled.velocities(*states).reshape(*lead, len(self.links) + 1, 2)
 
-    def mass_centers(self, t: ArrayLike, q: ArrayLike) -> Floats:
+    def mass_centers(self, t: npt.ArrayLike, q: npt.ArrayLike) -> Floats:
         """Mass centres of the links, a payload excluded, m, (..., n, 2): x right, y down.
 
         ``t`` and ``q`` are as in `accelerations`.
@@ -472,7 +476,7 @@ class Scene:
         lead, states = self._broadcast(t, q=q)
         return self._compiled.mass_centers(*states).reshape(*lead, len(self.links), 2)
 
-    def reactions(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike) -> Floats:
+    def reactions(self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike) -> Floats:
         """Force on each link at the joint where it begins, N, (..., n, 2): x right, y down.
 
         The arguments are as in `accelerations`. The textbook's F_01 (the ground's on link 1), F_12
@@ -488,7 +492,9 @@ class Scene:
         lead, states = self._broadcast(t, q=q, qd=qd)
         return self._compiled.reactions(*states).reshape(*lead, len(self.links), 2)
 
-    def energy(self, t: ArrayLike, q: ArrayLike, qd: ArrayLike) -> tuple[Floats, Floats]:
+    def energy(
+        self, t: npt.ArrayLike, q: npt.ArrayLike, qd: npt.ArrayLike
+    ) -> tuple[Floats, Floats]:
         """Kinetic and potential energy, J, each (...); the arguments are as in `accelerations`.
 
         The potential energy is zero where all links are level, and springs are at rest.
@@ -504,7 +510,9 @@ class Scene:
         kinetic, potential = self._compiled.energy(*states)
         return kinetic.reshape(lead), potential.reshape(lead)
 
-    def _broadcast(self, t: ArrayLike, **angles: ArrayLike) -> tuple[tuple[int, ...], list[Floats]]:
+    def _broadcast(
+        self, t: npt.ArrayLike, **angles: npt.ArrayLike
+    ) -> tuple[tuple[int, ...], list[Floats]]:
         """Return the leading shape of times and angles or rates, and each of them in rows."""
         n = len(self.links)
         units = {"q": "rad", "qd": "rad/s", "qdd": "rad/s^2"}
@@ -521,7 +529,7 @@ class Scene:
         rows = [np.broadcast_to(one, (*lead, n)).reshape(-1, n) for one in given]
         return lead, [np.broadcast_to(times, lead).reshape(-1), *rows]
 
-    def distances(self, q: ArrayLike, reference: ArrayLike) -> Floats:
+    def distances(self, q: npt.ArrayLike, reference: npt.ArrayLike) -> Floats:
         """How far apart two motions are, as a share of the total length: the error of positions.
 
         It is the largest distance between the places of the same joint, or of the tip, of the order
@@ -560,7 +568,7 @@ class Scene:
                 apart = np.maximum(apart, np.abs(place))
         return np.asarray(apart)
 
-    def mass_matrix(self, q: ArrayLike) -> Floats:
+    def mass_matrix(self, q: npt.ArrayLike) -> Floats:
         """Mass matrix of the equations of motion, symmetric and positive definite.
 
         It includes payloads and rotors. It ignores locks: it is the matrix of the chain with all
@@ -612,7 +620,7 @@ class Scene:
         parts = (part for effect in self.effects for part in effect.parts().values())
         return max((abs(getattr(x, "angular_frequency", 0.0)) for x in parts), default=0.0)
 
-    def explain(self, t: float = 0.0, q: ArrayLike | None = None) -> Explanation:
+    def explain(self, t: float = 0.0, q: npt.ArrayLike | None = None) -> Explanation:
         """Say what is simulated and what is not, what it costs, and how fast it moves.
 
         Parameters
@@ -656,7 +664,7 @@ class Scene:
 
         return absent(self)
 
-    def run_warnings(self, q0: ArrayLike, t_span: Iterable[float]) -> list[str]:
+    def run_warnings(self, q0: npt.ArrayLike, t_span: Iterable[float]) -> list[str]:
         """Return what `simulate` would warn of in a start (rad) and a span (s).
 
         Examples

@@ -75,9 +75,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--method", metavar="NAME", help="method, in place of that of the case")
     for name, kind in (("rtol", "relative"), ("atol", "absolute")):
         told = f"{kind} tolerance, in place of that of the case"
-        arguments.add_number(
-            parser, f"--{name}", "X", f"{kind} tolerance, in place of that of the case"
-        )
+        arguments.add_number(parser, f"--{name}", "X", told)
     arguments.add_number(parser, "--step", "X", "s, a fixed step, in place of tolerances")
     parser.add_argument(
         "--parameters",

@@ -152,11 +152,14 @@ def require_name(what: object) -> None:
 
 
 def whole_names(
-    plot: Callable[..., Any], artist: type[Artist], given: dict[str, Any], more: Sequence[str] = ()
+    plot: Callable[..., Any],
+    artist: type[Artist],
+    given: dict[str, Any],
+    others: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Return properties of what a method draws by their whole names.
 
-    TypeError for one that neither the artist has nor matplotlib takes besides (``more``).
+    TypeError for one that neither the artist has nor matplotlib takes besides (``others``).
     """
     from matplotlib.artist import ArtistInspector
     from matplotlib.cbook import normalize_kwargs
@@ -164,7 +167,7 @@ def whole_names(
     whole: dict[str, Any] = normalize_kwargs(given, artist)
     _, *own, _ = signature(plot).parameters
     ours = {"array", "data", "xdata", "ydata", "figure"}
-    known = {*ArtistInspector(artist).get_setters(), *more} - ours
+    known = {*ArtistInspector(artist).get_setters(), *others} - ours
     require_known(plot.__qualname__, whole, [*own, *sorted(known)])
     return whole
 

@@ -110,16 +110,18 @@ def _count(axis: Axes) -> int:
     return sum(line.get_gid() == _GID for line in axis.lines)
 
 
-def _draw(axis: Axes, t: Floats, xy: Floats, asked: Request, ours: dict[str, Any]) -> list[Artist]:
+def _draw(
+    axis: Axes, t: Floats, points: Floats, asked: Request, ours: dict[str, Any]
+) -> list[Artist]:
     """Draw a curve (k, 2), pale where it is past the horizon; its name says until when."""
     how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
     count = int((np.abs(t - t[0]) <= abs(asked.until - t[0])).sum())
-    lines = axis.plot(*xy[:count].T, gid=_GID, **how)
+    lines = axis.plot(*points[:count].T, gid=_GID, **how)
     if count < len(t):
         known = {line.get_label() for other in axis.figure.axes for line in other.lines}
         said = "_" if asked.after() in known else asked.after()
         pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
-        axis.plot(*xy[max(count - 1, 0) :].T, label=said, **pale)
+        axis.plot(*points[max(count - 1, 0) :].T, label=said, **pale)
     return [*lines]
 
 

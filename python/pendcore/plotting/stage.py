@@ -251,17 +251,19 @@ class _Chain:
         return np.clip(at + reach * towards, low + edge, high - edge), half
 
 
-def _layout(figure: Figure, count: int, rows: int, how: Choices) -> tuple[list[Axes], list[Axes]]:
+def _layout(
+    figure: Figure, count: int, rows: int, choices: Choices
+) -> tuple[list[Axes], list[Axes]]:
     """Return the axes of ``count`` chains, which fill their part of the figure, and of curves.
 
     In a wide frame the curves stand beside a square stage. In another they stand below, where they
     are asked for; so they do where chains are side by side.
     """
     width, height = figure.get_size_inches()
-    is_wide = width > 1.5 * height and not how.beside
+    is_wide = width > 1.5 * height and not choices.beside
     stage: Any = figure
     panels: list[Axes] = []
-    if is_wide or how.energy or how.reactions:
+    if is_wide or choices.energy or choices.reactions:
         figure.set_layout_engine("constrained")
         shape: dict[str, Any] = {"nrows": 2, "height_ratios": [2, rows]}
         if is_wide:
@@ -270,7 +272,7 @@ def _layout(figure: Figure, count: int, rows: int, how: Choices) -> tuple[list[A
         panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
         for axis in panels:
             keep_style(axis)
-    columns = count if how.beside else 1
+    columns = count if choices.beside else 1
     return [stage.add_axes((k / columns, 0.0, 1 / columns, 1.0)) for k in range(columns)], panels
 
 

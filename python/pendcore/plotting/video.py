@@ -89,8 +89,9 @@ def _even_size(given: tuple[int, int]) -> tuple[int, int]:
     pixels = np.asarray(given)
     is_whole = pixels.shape == (2,) and pixels.dtype.kind in "iu"
     if not (is_whole and (pixels % 2 == 0).all() and 64 <= pixels.min() <= pixels.max() <= 8192):
-        wanted = "must be (width, height) in pixels, both even, and 64 to 8192"
-        raise ValueError(f"size = {given!r}: {wanted}")
+        raise ValueError(
+            f"size = {given!r}: must be (width, height) in pixels, both even, and 64 to 8192"
+        )
     return int(pixels[0]), int(pixels[1])
 
 
@@ -149,14 +150,16 @@ def _write_mp4(
         raise RuntimeError(f"ffmpeg ended with {process.returncode}: {last or 'it says nothing'}")
 
 
-def _write_gif(samples: Iterator[Pixels], frames: Iterator[Pixels], file: Path, fps: float) -> None:
+def _write_gif(
+    samples: Iterator[Pixels], pictures: Iterator[Pixels], file: Path, fps: float
+) -> None:
     """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
     from PIL.Image import Dither, fromarray
 
     palette = _palette(samples)
     first, *rest = (
-        fromarray(frame[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
-        for frame in frames
+        fromarray(picture[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
+        for picture in pictures
     )
     ticks = np.round(np.arange(len(rest) + 2) * 1000 / fps / _GIF_TICK)
     durations = (_GIF_TICK * np.diff(ticks)).astype(int).tolist()
