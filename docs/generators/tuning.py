@@ -9,7 +9,6 @@ docs/background/accuracy_cost.md.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,20 +30,13 @@ HEAD = """\
 
 @contextmanager
 def changed(name: str, value: Any) -> Iterator[None]:
-    """Give a number another value in every module that has it."""
-    homes = [
-        module
-        for path, module in sys.modules.items()
-        if path.startswith("pendcore._accuracy") and hasattr(module, name)
-    ]
+    """Give a number another value; those who count by it look it up."""
     before = getattr(tuning, name)
+    setattr(tuning, name, value)
     try:
-        for home in homes:
-            setattr(home, name, value)
         yield
     finally:
-        for home in homes:
-            setattr(home, name, before)
+        setattr(tuning, name, before)
 
 
 def outcome(scene: Any) -> dict[str, Any]:

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from pendcore._messages.arguments import did_you_mean, in_unit, require_known
 from pendcore._scene.effect_class import Described, Effect, OwnEffect, Part
+from pendcore._scene.effect_description import effects as described_effects
+from pendcore._scene.effect_description import parts as described_parts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -183,26 +185,10 @@ class User(OwnEffect):
         return self.kind, (self.function, self.breaks)
 
 
-PARTS: dict[str, type[Part]] = {cls.__name__: cls for cls in (Sinusoid, Table, PD, Spline)}
+PARTS: dict[str, type[Part]] = {told.name: globals()[told.name] for told in described_parts()}
 """The classes of what parameters hold that have parameters of their own, by name."""
 
-KINDS: dict[str, type[Effect]] = {
-    cls.kind: cls
-    for cls in (
-        ViscousJoint,
-        DryJointFriction,
-        RodDrag,
-        TorsionalSpring,
-        Motor,
-        RotorInertia,
-        Payload,
-        Lock,
-        JointStop,
-        DrivenPivot,
-        CompiledUser,
-        User,
-    )
-}
+KINDS: dict[str, type[Effect]] = {told.kind: globals()[told.name] for told in described_effects()}
 """The classes of effects, by kind, in the order of the core's registry."""
 
 
@@ -254,10 +240,6 @@ def __getattr__(name: str) -> NoReturn:
     raise AttributeError(f"pendcore.effects has no {name!r}: {did_you_mean(name, __all__)}")
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "PD",
     "CompiledUser",
@@ -280,3 +262,4 @@ __all__ = [
     "kinds",
     "parts",
 ]
+__dir__ = __all__.copy

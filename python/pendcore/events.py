@@ -372,10 +372,6 @@ class FoundEvents(list[Found]):
         return np.array([one.direction for one in self], dtype=np.int_)
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "Event",
     "Found",
@@ -386,3 +382,4 @@ __all__ = [
     "RateZero",
     "TipLine",
 ]
+__dir__ = __all__.copy

@@ -69,10 +69,6 @@ def evaluations(method: str, last_method: str, nfev: int) -> str:
     return f"{nfev:,} Taylor expansions"
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "TIGHTEST",
     "TIGHTEST_IMPLICIT",
@@ -84,3 +80,4 @@ __all__ = [
     "pair_of",
     "sentences",
 ]
+__dir__ = __all__.copy

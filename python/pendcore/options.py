@@ -12,6 +12,7 @@ cases, and the tables in the documentation are made from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from inspect import Parameter, signature
 from textwrap import fill
 from typing import Any, Literal, NamedTuple, TypeAlias, TypedDict, TypeVar
@@ -54,38 +55,26 @@ class RunKeywords(TypedDict, total=False):
 
 
 class RunOption(NamedTuple):
-    """The descriptor of an option.
-
-    Attributes
-    ----------
-    name, annotation : str
-        The keyword, and how Python annotates what may be given.
-    sentence : str
-        What it is, in reStructuredText.
-    default : object
-        What holds if it is not given.
-    if_none : str
-        What a run does where that is None.
-    type : str
-        What docstrings say may be given; empty where it is the annotation.
-    unit, range : str
-        The unit and the allowed range of a number; either may be empty.
-    chosen_for_error : bool
-        Whether ``simulate(error=...)`` chooses it.
-    limits_every_method : bool
-        Whether a comparison of methods gives it to each of them.
-    """
+    """The descriptor of an option."""
 
     name: str
     annotation: str
+    """The keyword, and how Python annotates what may be given."""
     sentence: str
+    """What it is, in reStructuredText."""
     default: Any = None
+    """What holds if it is not given."""
     if_none: str = ""
+    """What a run does where that is None."""
     type: str = ""
+    """What docstrings say may be given; empty where it is the annotation."""
     unit: str = ""
     range: str = ""
+    """The unit and the allowed range of a number; either may be empty."""
     chosen_for_error: bool = False
+    """Whether ``simulate(error=...)`` chooses it."""
     limits_every_method: bool = False
+    """Whether a comparison of methods gives it to each of them."""
 
 
 ERROR = RunOption(
@@ -124,16 +113,9 @@ PROGRESS = RunOption(
     type="bool or callable",
     if_none="a bar after a second, on a terminal",
 )
-OPTIONS = {
-    one.name: one
-    for one in (
-        *(RunOption(**one) for one in _core.run_options()),
-        ERROR,
-        SENSITIVITIES,
-        ON_FAILURE,
-        PROGRESS,
-    )
-}
+_EVERY = [RunOption(**told) for told in _core.run_options()]
+_EVERY += [ERROR, SENSITIVITIES, ON_FAILURE, PROGRESS]
+OPTIONS = {one.name: one for one in _EVERY}
 """By name, in the order of the signature."""
 RUN_DEFAULTS = {name: option.default for name, option in OPTIONS.items()}
 
@@ -160,12 +142,8 @@ def with_options(
     def described(function: Function) -> Function:
         own = signature(function)
         first = [one for one in own.parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
-        options = [
-            Parameter(
-                one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=one.annotation
-            )
-            for one in listed
-        ]
+        by_name = partial(Parameter, kind=Parameter.KEYWORD_ONLY)
+        options = [by_name(x.name, default=x.default, annotation=x.annotation) for x in listed]
         shown: Any = function
         shown.__signature__ = own.replace(parameters=[*first, *options])
         if function.__doc__ is not None:  # python -OO has none
@@ -191,10 +169,6 @@ def _documented(options: list[RunOption], margin: str) -> Iterator[str]:
                 yield fill(text, 100, initial_indent=inner, subsequent_indent=inner)
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = [
     "OPTIONS",
     "RUN_DEFAULTS",
@@ -205,3 +179,4 @@ __all__ = [
     "require_options",
     "with_options",
 ]
+__dir__ = __all__.copy

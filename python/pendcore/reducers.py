@@ -75,9 +75,8 @@ class FirstEvent(Reducer):
 
     def __post_init__(self) -> None:
         if not isinstance(self.event, Event):
-            raise TypeError(
-                f"event = {self.event!r}: must be an event, such as pc.events.LinkAngle(1, 0.0)"
-            )
+            wanted = "must be an event, such as pc.events.LinkAngle(1, 0.0)"
+            raise TypeError(f"event = {self.event!r}: {wanted}")
 
     @staticmethod
     def largest_difference(one: Floats, two: Floats) -> Floats:
@@ -166,8 +165,5 @@ REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, Larges
 """Those that the core computes, in the order of its arguments."""
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]
+__dir__ = __all__.copy

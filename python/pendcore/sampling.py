@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from pendcore._messages.arguments import Floats, real_array, whole_number
+from pendcore._messages.arguments import Floats, at_least, real_array
 
 Size = int | tuple[int, ...]
 
@@ -78,10 +78,7 @@ def normal(mean: npt.ArrayLike, deviation: npt.ArrayLike, size: Size, *, seed: i
 
 def _shape(size: Size) -> tuple[int, ...]:
     given = size if isinstance(size, tuple) else (size,)
-    shape = tuple(whole_number("size", one) for one in given)
-    if any(one < 0 for one in shape):
-        raise ValueError(f"size = {size!r}: must not be negative")
-    return shape
+    return tuple(at_least("size", one, 0) for one in given)
 
 
 def _require_to_fit(shape: tuple[int, ...], **given: Floats) -> None:
@@ -96,15 +93,10 @@ def _require_to_fit(shape: tuple[int, ...], **given: Floats) -> None:
 
 def _shares(size: Size, seed: int) -> Floats:
     """Return numbers from 0 to below 1: each takes one output of the generator."""
-    key = whole_number("seed", seed)
-    if key < 0:
-        raise ValueError(f"seed = {seed}: must be >= 0")
+    key = at_least("seed", seed, 0)
     drawn: Floats = np.random.Generator(np.random.Philox(key=key)).random(_shape(size))
     return drawn
 
 
-def __dir__() -> list[str]:
-    return __all__
-
-
 __all__ = ["normal", "uniform"]
+__dir__ = __all__.copy

@@ -61,7 +61,7 @@ NOT_TIME_LIMITS: list[Row] = [
     ({"time_limit": [1.0]}, r"time_limit = \[1.0\]: must be a real number \(s\)"),
 ]
 ERRORS_OF_COST: list[Row] = [
-    ({"error": x}, "must be > 0, a share of the total length") for x in (0, -1, nan)
+    ({"error": x}, r"must be > 0 \(of the total length\)") for x in (0, -1, nan)
 ]
 
 BAD: dict[str, tuple[Callable[..., Any], list[Row]]] = {

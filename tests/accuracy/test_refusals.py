@@ -136,7 +136,7 @@ def test_the_least_error_that_is_told_is_kept(
 
 def test_no_least_error_is_told_that_no_search_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first search for a least error of this scene is refused, too."""
-    monkeypatch.setattr("pendcore._accuracy.target_error.MOST_SEARCHES", 1)
+    monkeypatch.setattr("pendcore._accuracy.tuning.MOST_SEARCHES", 1)
     with pytest.raises(pc.AccuracyError, match="reached, but no search kept an error so") as caught:
         pc.simulate(BOOK, (0, 12), [-1.2, -0.6], error=1e-9)
     assert caught.value.least == np.inf
@@ -151,7 +151,7 @@ def test_the_search_for_the_least_error_ends_with_the_time(monkeypatch: pytest.M
 
 
 def test_it_is_refused_as_well_when_no_run_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pendcore._accuracy.target_error.MOST_RUNS", 2)
+    monkeypatch.setattr("pendcore._accuracy.tuning.MOST_RUNS", 2)
     with pytest.raises(pc.AccuracyError, match="the search ended after 2 runs") as caught:
         pc.simulate(BOOK, (0, 10), CHAOTIC, error=1e-3)
     assert not caught.value.solution.accuracy.reached

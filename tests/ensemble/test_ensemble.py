@@ -144,7 +144,7 @@ REFUSED = [
     ({"store": "dense"}, "store = 'dense': is a folder for the results here"),
     ({"keep": "times"}, "t_eval is missing"),
     ({"t_eval": [0.5]}, "is kept only with"),
-    ({"workers": 0}, "workers = 0: must be 1 or more"),
+    ({"workers": 0}, "workers = 0: must be >= 1"),
     ({"method": "euler"}, 'method = "euler": must be one of'),
     ({"rtol": -1.0}, "rtol"),
     ({"max_steps": 0}, "max_steps"),

@@ -213,7 +213,7 @@ def test_what_cannot_be_a_store(tmp_path, monkeypatch):
     own = BOOK.replace(effects=[pc.effects.User(lambda t, q, qd: -qd)])
     with pytest.raises(TypeError, match="cannot be saved"):
         pc.ensemble(own, q0=STARTS, t_span=(0, 1), store=tmp_path / "own.zarr")
-    with pytest.raises(ValueError, match="chunk = 0: must be 1 or more members"):
+    with pytest.raises(ValueError, match="chunk = 0: must be >= 1"):
         make(tmp_path / "a.zarr", chunk=0)
     free = shutil.disk_usage(tmp_path)._replace(free=1000)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: free)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from pendcore._accuracy import tuning
 from pendcore._accuracy.trials import TrialRun, Trials
-from pendcore._accuracy.tuning import AIM, FARTHER, NOTHING_IN_COMMON
 from pendcore._run.error_estimate import ErrorEstimate
 
 
@@ -14,9 +14,9 @@ def aimed(
 
     ``distance`` is that from a second run, where the error of the trial is not verified by it.
     """
-    if error.is_lost or error.largest > max(NOTHING_IN_COMMON, runs.error):
+    if error.is_lost or error.largest > max(tuning.NOTHING_IN_COMMON, runs.error):
         return _scale_before_it_grew(runs, trial, distance or error)
-    return trial.scale * AIM * runs.error / max(error.largest, 1e-9 * runs.error)
+    return trial.scale * tuning.AIM * runs.error / max(error.largest, 1e-9 * runs.error)
 
 
 def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate) -> float:
@@ -25,10 +25,10 @@ def _scale_before_it_grew(runs: Trials, trial: TrialRun, distance: ErrorEstimate
     Errors grow as exp(rate t); the rate follows from the time at which the error becomes large.
     """
     begin = runs.start.t_start
-    until = distance.valid_until(NOTHING_IN_COMMON, of="position") - begin
-    farther = trial.scale / FARTHER
-    if not until or trial.scale >= NOTHING_IN_COMMON:
+    until = distance.valid_until(tuning.NOTHING_IN_COMMON, of="position") - begin
+    farther = trial.scale / tuning.FARTHER
+    if not until or trial.scale >= tuning.NOTHING_IN_COMMON:
         return farther
     whole = trial.solution.t_reached - begin
-    grown: float = (trial.scale / NOTHING_IN_COMMON) ** float(whole / until)
-    return min(farther, max(AIM * runs.error * grown, farther / FARTHER))
+    grown: float = (trial.scale / tuning.NOTHING_IN_COMMON) ** float(whole / until)
+    return min(farther, max(tuning.AIM * runs.error * grown, farther / tuning.FARTHER))

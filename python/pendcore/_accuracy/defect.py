@@ -23,7 +23,9 @@ class Defect:
     The curve consists of the rates of the dense output and of their integral, which begins at the
     first angles. With motors in the joints that add these torques, the curve would obey the
     equations of motion exactly. A joint that is held (lock, friction, stop) needs no torque,
-    because its hold takes any.
+    because its hold takes any. Compare the torques with what a model leaves out: bearing friction,
+    air, a motor's ripple. They say nothing about how far a chaotic motion has moved away from the
+    exact one.
 
     Attributes
     ----------
@@ -81,13 +83,7 @@ class Defect:
 
 
 def defect(scene: Scene, run: _core.Run, progress: Progress = None) -> Defect:
-    """Return the torques at the joints that would make a run exact.
-
-    The rates of ``sol(t)`` and the angles that their integral gives obey the equations of motion of
-    the scene with these torques at the joints. Compare the torques with what a model leaves out:
-    bearing friction, air, a motor's ripple. They say nothing about how far a chaotic motion has
-    moved away from the exact one.
-    """
+    """Return the torques at the joints that would make a run exact."""
     n = len(scene.links)
     starts = run.step_starts
     torque = np.empty((len(starts), n))

@@ -21,12 +21,12 @@ from typing import ClassVar
 import numpy as np
 
 from pendcore import _core
+from pendcore._accuracy import tuning
 from pendcore._accuracy.aim import aimed
 from pendcore._accuracy.estimate import apart, error_over
 from pendcore._accuracy.position_error import angles_at
 from pendcore._accuracy.rounding import moved, neighbours
 from pendcore._accuracy.trials import TrialRun, Trials
-from pendcore._accuracy.tuning import EXPENSIVE, FIRST_BY_DEFECT, LEAST_CHANGE, UNSTABLE
 from pendcore._run.accuracy import DEFECT
 from pendcore._run.call import Start
 from pendcore._run.error_estimate import ErrorEstimate
@@ -36,41 +36,31 @@ from pendcore._run.work import series_work
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FromDefect:
-    """The strategy that takes the error of a trial from the defect of its own curve.
-
-    Attributes
-    ----------
-    method : str
-        The method of its trials.
-    points : (int, int)
-        The numbers of points in a step with which the scene itself is integrated.
-    agree : float
-        The two are trusted if their largest distance is at most this share of the largest error,
-        up to where the run is lost. They differ by more where a motion is strongly damped, and
-        after thousands of steps.
-    share : float
-        The share of the largest correction so far that is added to the error.
-    errors : (float, float)
-        The errors asked for that it serves: from the first on, and below the second.
-    series_are_expensive : bool
-        Whether it serves scenes alone whose series take as long as many right-hand sides.
-    """
+    """The strategy that takes the error of a trial from the defect of its own curve."""
 
     method: str
+    """The method of its trials."""
     points: tuple[int, int]
+    """The numbers of points in a step with which the scene itself is integrated."""
     agree: float
+    """The two are trusted if their largest distance is at most this share of the largest error, up
+    to where the run is lost. They differ by more where a motion is strongly damped, and after
+    thousands of steps."""
     share: float
+    """The share of the largest correction so far that is added to the error."""
     errors: tuple[float, float]
+    """The errors asked for that it serves: from the first on, and below the second."""
     series_are_expensive: bool = False
+    """Whether it serves scenes alone whose series take as long as many right-hand sides."""
     serves_every_trial: ClassVar[bool] = False
 
     @property
     def first_aim(self) -> float:
-        return FIRST_BY_DEFECT
+        return tuning.FIRST_BY_DEFECT
 
     def serves(self, start: Start, error: float) -> bool:
         """Whether it is tried for an error of a smooth scene."""
-        is_expensive = series_work(start.scene, 1e-3) > EXPENSIVE
+        is_expensive = series_work(start.scene, 1e-3) > tuning.EXPENSIVE
         least, most = self.errors
         return least <= error < most and (is_expensive or not self.series_are_expensive)
 
@@ -78,9 +68,7 @@ class FromDefect:
         """Return what is to look on while a trial of a typical error, ``scale``, is made."""
         motions: list[tuple[Start, tuple[int, ...]]] = [(start, self.points)]
         motions += [(moved(start, seed), self.points[1:]) for seed in range(neighbours(scale))]
-        return _core.DefectCorrection(
-            [(one.scene._compiled, one.q0, points) for one, points in motions]
-        )
+        return _core.DefectCorrection([(x.scene._compiled, x.q0, points) for x, points in motions])
 
     def verify(self, runs: Trials, trial: TrialRun) -> ErrorEstimate | None:
         """Return the error of a trial as its correction shows it; None if it cannot be trusted."""
@@ -95,7 +83,7 @@ class FromDefect:
         error = self.verify(runs, last)
         if error is None or last.rtol <= runs.tightest:
             return None
-        scale = min(aimed(runs, last, error), last.scale / LEAST_CHANGE)
+        scale = min(aimed(runs, last, error), last.scale / tuning.LEAST_CHANGE)
         return runs.trial(scale, last.method)
 
     def error(
@@ -103,7 +91,7 @@ class FromDefect:
     ) -> ErrorEstimate | None:
         """Return the error of a run; one that is lost has no known error from there on."""
         between, largest, at_loss, t_known = correction.agreement
-        if not (between <= self.agree * largest and at_loss < UNSTABLE):
+        if not (between <= self.agree * largest and at_loss < tuning.UNSTABLE):
             return None
         t, corrections = correction.t, np.moveaxis(correction.errors, 1, 0)
         if not len(t):

@@ -38,7 +38,7 @@ from pendcore._accuracy.position_error import (
 from pendcore._accuracy.rounding import moved
 from pendcore._messages.arguments import Floats, time_limit_of
 from pendcore._messages.handed_over import hand_over
-from pendcore._messages.progress import Progress, reporting
+from pendcore._messages.progress import Progress, part_of, reporting
 from pendcore._run.call import Choice, Start, resumed, run, start_of, tightened
 from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.solution import Solution
@@ -220,7 +220,7 @@ def _compared(solution: Solution, method: str, until: float, report: Report) -> 
     try:
         for seed in range(count):
             choice = tightened(first, TIGHTER[seed], TIGHTEST)
-            share = _part_of(report, seed, count)
+            share = part_of(report, seed / count, 1 / count)
             second: Solution | None = None
             for second in _legs(solution, moved(start, seed), choice, until, share):
                 if _is_lost(solution, second):
@@ -249,12 +249,11 @@ def _legs(
     count = int(np.clip(solution.stats.accepted / STEPS_A_LEG, 1, LEGS))
     times = second_times(solution)
     ends = np.linspace(start.t_start, start.t_end, count + 1)[1:]
-    ends[-1] = start.t_end
     parts = [None] * count if times is None else np.array_split(times, count)
     second: Solution | None = None
     for done, (end, part) in enumerate(zip(ends, parts, strict=True)):
         left = None if until == inf else max(1e-3, until - monotonic())
-        share = _part_of(report, done, count)
+        share = part_of(report, done / count, 1 / count)
         share(0.0)  # a leg may be over before the core first reports
         if part is not None:
             if not len(part):
@@ -268,11 +267,6 @@ def _legs(
         yield second
         if not second.success or monotonic() > until:
             return
-
-
-def _part_of(report: Report, done: int, count: int) -> Report:
-    """Return what reports the progress of one of several parts."""
-    return lambda fraction: report((done + fraction) / count)
 
 
 def _choice_of(solution: Solution) -> Choice:

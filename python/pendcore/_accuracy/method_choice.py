@@ -55,8 +55,7 @@ def rounded(rtol: float, tightest: float = TIGHTEST) -> float:
 
 def leading(method: str) -> str:
     """Return the first method of a pair."""
-    first: str = known_methods()[method]["first"]
-    return first
+    return str(known_methods()[method]["first"])
 
 
 def same_or_other(method: str, stats: Statistics) -> str:

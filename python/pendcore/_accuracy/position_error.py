@@ -11,19 +11,16 @@ import numpy.typing as npt
 from pendcore._messages.arguments import Floats
 from pendcore._run.solution import Solution
 
-POINTS = 101
-"""The number of times on the fixed grid on which methods are compared, both ends included."""
 SAMPLES, CUTS = 6, 60
 """The steps of the other runs cut a step of the run into intervals. Each interval holds SAMPLES
 times, or a single one where it is one of more than CUTS: the error within a step is a polynomial of
 low degree."""
 
 
-def time_grid(t_start: float, t_end: float, points: int = POINTS) -> Floats:
+def time_grid(t_start: float, t_end: float, points: int = 101) -> Floats:
     """Return evenly spaced times of a run, s, (points,): both ends to the last bit, none twice."""
-    times = np.linspace(t_start, t_end, points)
-    times[-1] = t_end
-    return _distinct(times)  # a span of a few last bits has fewer times than points
+    # A span of a few last bits has fewer times than points.
+    return _distinct(np.linspace(t_start, t_end, points))
 
 
 def kept_times(solution: Solution) -> Floats:
@@ -32,8 +29,7 @@ def kept_times(solution: Solution) -> Floats:
 
 
 def _distinct(t: Floats) -> Floats:
-    distinct: Floats = t[np.append(True, np.diff(t) != 0)[: len(t)]]
-    return distinct
+    return np.asarray(t[np.append(True, np.diff(t) != 0)[: len(t)]])
 
 
 def times_within_steps(runs: Iterable[Solution]) -> Floats:
@@ -91,5 +87,4 @@ def largest_difference(q: Floats, reference: Floats | float = 0.0) -> Floats:
 def reached(solution: Solution, t: Floats) -> npt.NDArray[np.bool_]:
     """Return at which of the times (n_t,), s, a run was."""
     start, end = solution._run.arguments["t_start"], solution._run.t_reached
-    there: npt.NDArray[np.bool_] = (min(start, end) <= t) & (t <= max(start, end))
-    return there
+    return np.asarray((min(start, end) <= t) & (t <= max(start, end)))

@@ -10,27 +10,12 @@ from __future__ import annotations
 
 from math import inf
 
+from pendcore._accuracy import tuning
 from pendcore._accuracy.aim import aimed
 from pendcore._accuracy.estimate import SPARE_OF_SEVERAL
 from pendcore._accuracy.method_choice import leading
 from pendcore._accuracy.rounding import neighbours
 from pendcore._accuracy.trials import TrialRun, Trials
-from pendcore._accuracy.tuning import (
-    ALIKE,
-    BETTER,
-    BETTER_SERIES,
-    BETTER_STILL,
-    CAUTION_IF_TIGHT,
-    FARTHER,
-    FIRST,
-    LEAST_CHANGE,
-    LIKELY,
-    NOTHING_IN_COMMON,
-    RATIO,
-    SHARE_IF_ALIKE,
-    SPARE,
-    SPARED,
-)
 from pendcore._run.call import Start
 from pendcore._run.error_estimate import ErrorEstimate
 
@@ -43,7 +28,7 @@ class SecondRuns:
 
     @property
     def first_aim(self) -> float:
-        return FIRST
+        return tuning.FIRST
 
     def correction(self, start: Start, scale: float) -> None:
         """Its trials are made without."""
@@ -57,8 +42,8 @@ class SecondRuns:
             share = _share_if_tight(runs, trial, better)
             return None if share is None else runs.compared(trial, better, share)
         is_other = better[0].method != trial.method and not runs.is_stiff
-        if is_other or better[0].scale * RATIO > better[1].scale:
-            return runs.compared(trial, better, SPARE)
+        if is_other or better[0].scale * tuning.RATIO > better[1].scale:
+            return runs.compared(trial, better, tuning.SPARE)
         return runs.compared(trial, better)
 
     def next_run(self, runs: Trials) -> TrialRun | None:
@@ -71,14 +56,14 @@ class SecondRuns:
         distance = runs.compared(last, better[:1], 0.0)
         error = known or distance
         scale = aimed(runs, last, error, distance)
-        if known is None and error.largest <= LIKELY * runs.error and not error.is_lost:
+        if known is None and error.largest <= tuning.LIKELY * runs.error and not error.is_lost:
             if not tight_runs(last):
                 return second_run(runs, last)
             is_missing = not looser_runs(runs, last, better[0])
-            return runs.second(last, FARTHER * better[0].scale) if is_missing else None
+            return runs.second(last, tuning.FARTHER * better[0].scale) if is_missing else None
         if last.rtol <= runs.tightest:
             return None
-        scale = min(scale, last.scale / LEAST_CHANGE)
+        scale = min(scale, last.scale / tuning.LEAST_CHANGE)
         return runs.trial(scale, runs.method_for(scale))
 
 
@@ -87,8 +72,9 @@ def second_run(runs: Trials, trial: TrialRun) -> TrialRun:
     if tight_runs(trial):
         return runs.second(trial, 0.0)
     if better_than(runs, trial):
-        return runs.second(trial, min(second.scale for second in runs.seconds) / BETTER_STILL)
-    return runs.second(trial, trial.scale / (SPARED * better_by(trial)))
+        best = min(second.scale for second in runs.seconds)
+        return runs.second(trial, best / tuning.BETTER_STILL)
+    return runs.second(trial, trial.scale / (tuning.SPARED * better_by(trial)))
 
 
 def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> float | None:
@@ -101,20 +87,20 @@ def _share_if_tight(runs: Trials, trial: TrialRun, seconds: list[TrialRun]) -> f
     truncation = inf
     for other in looser_runs(runs, trial, seconds[0]) if own else []:
         distance = runs.distance(other, seconds[0])
-        if distance < NOTHING_IN_COMMON:
+        if distance < tuning.NOTHING_IN_COMMON:
             ratio = seconds[0].scale / other.scale
-            truncation = min(truncation, distance * ratio**CAUTION_IF_TIGHT)
-    least = SHARE_IF_ALIKE if trial.rtol < ALIKE * runs.tightest else SPARE_OF_SEVERAL
+            truncation = min(truncation, distance * ratio**tuning.CAUTION_IF_TIGHT)
+    least = tuning.SHARE_IF_ALIKE if trial.rtol < tuning.ALIKE * runs.tightest else SPARE_OF_SEVERAL
     if truncation == inf:
-        return None if runs.is_stiff and own > 0 else least + SPARE
-    return max(least, truncation / own) + SPARE
+        return None if runs.is_stiff and own > 0 else least + tuning.SPARE
+    return max(least, truncation / own) + tuning.SPARE
 
 
 def looser_runs(runs: Trials, trial: TrialRun, second: TrialRun) -> list[TrialRun]:
     """Return the runs that tell how the error of a second run's method depends on its tolerance."""
     others = (run for run in (*runs.trials, *runs.seconds) if run is not trial)
     alike = (run for run in others if run.method == second.method and run.solution.success)
-    return [run for run in alike if run.scale >= LEAST_CHANGE * second.scale]
+    return [run for run in alike if run.scale >= tuning.LEAST_CHANGE * second.scale]
 
 
 def better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
@@ -128,7 +114,7 @@ def better_than(runs: Trials, trial: TrialRun) -> list[TrialRun]:
 
 def better_by(trial: TrialRun) -> float:
     """Return the least factor by which a second run of its method is tighter than a trial."""
-    return BETTER_SERIES if leading(trial.method) == "taylor" else BETTER
+    return tuning.BETTER_SERIES if leading(trial.method) == "taylor" else tuning.BETTER
 
 
 def tight_runs(trial: TrialRun) -> int:

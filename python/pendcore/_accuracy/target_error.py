@@ -9,24 +9,15 @@ from __future__ import annotations
 
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from math import inf
+from time import monotonic
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from pendcore._accuracy import tuning
 from pendcore._accuracy.second_runs import second_run, tight_runs
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.trials import Strategy, TrialRun, Trials
-from pendcore._accuracy.tuning import (
-    AT_FEW_TIMES,
-    FARTHER,
-    HOPELESS,
-    IF_DAMPED,
-    LARGE_ANGLE,
-    LATE,
-    MOST_RUNS,
-    MOST_SEARCHES,
-    MOST_STEPS,
-)
 from pendcore._messages.arguments import finite_array
 from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import callback, close
@@ -109,19 +100,19 @@ def _accepted(runs: Trials, strategy: Strategy) -> Solution | Refusal | None:
             runs.drop(latest)  # a tighter trial came to the end, so this one shows nothing
         else:
             return _not_finished(runs, latest)
-        next_one = strategy.next_run(runs) if len(runs.paid) < MOST_RUNS else None
+        next_one = strategy.next_run(runs) if len(runs.paid) < tuning.MOST_RUNS else None
         if next_one is None:
             is_told = strategy.verify(runs, runs.tightest_trial) is not None
-            return _refusal(runs) if is_told or len(runs.paid) >= MOST_RUNS else None
+            return _refusal(runs) if is_told or len(runs.paid) >= tuning.MOST_RUNS else None
         latest = next_one
 
 
 def _first_scale(runs: Trials, factor: float) -> float:
     """Return the scale of a first trial: a factor times the error asked for, or looser."""
     if runs.keeps_few_times:
-        factor *= AT_FEW_TIMES
+        factor *= tuning.AT_FEW_TIMES
     if runs.any_effect(lambda effect: effect.damps_small_motions):
-        factor *= IF_DAMPED
+        factor *= tuning.IF_DAMPED
     return factor * runs.error
 
 
@@ -133,7 +124,9 @@ def _not_finished(runs: Trials, latest: TrialRun) -> Solution | Refusal:
         return _ended_early(runs, latest)
     why = f"{latest.text}: {latest.solution.message}"
     if latest.solution._run.arguments["max_steps"] < runs.options["max_steps"]:
-        why = f"{latest.text} takes more than {MOST_STEPS} times the steps of the first trial"
+        why = (
+            f"{latest.text} takes more than {tuning.MOST_STEPS} times the steps of the first trial"
+        )
     return _refusal(runs, why)
 
 
@@ -154,7 +147,7 @@ def _first_trial(runs: Trials, strategy: Strategy) -> TrialRun:
     while trial.solution.status in FOLLOWED_BADLY and trial.rtol > runs.tightest:
         before = trial.solution.t_reached
         runs.drop(trial)
-        trial = runs.trial(trial.scale / FARTHER, trial.method)
+        trial = runs.trial(trial.scale / tuning.FARTHER, trial.method)
         if abs(trial.solution.t_reached - before) <= 1e-3 * abs(before - runs.start.t_start):
             break  # both say that the motion ends there
     return trial
@@ -175,7 +168,7 @@ def _ended_early(runs: Trials, latest: TrialRun) -> Solution:
         seconds = [second_run(runs, latest) for _ in range(tight_runs(latest) or 2)]
         error = runs.compared(latest, seconds)
     solution = runs.concluded(latest.solution, "ended early", error)
-    if not error.is_complete and runs.is_out_of_time:
+    if not error.is_complete and monotonic() - runs.began >= runs.time_limit:
         solution.known_error = None  # a later call with more time may complete the estimate
     return solution
 
@@ -187,8 +180,8 @@ def _refusal(runs: Trials, why: str = "") -> Refusal:
     complete.sort(key=lambda trial: trial.scale)
     last = next((one for one in complete if verify(runs, one) is not None), complete[0])
     error = verify(runs, last)
-    if len(runs.paid) >= MOST_RUNS:
-        why = why or f"the search ended after {MOST_RUNS} runs: a larger error may be kept"
+    if len(runs.paid) >= tuning.MOST_RUNS:
+        why = why or f"the search ended after {tuning.MOST_RUNS} runs: a larger error may be kept"
     why = why or _in_the_way(runs, last, error)
     if error is None or not error.is_complete:
         runs.concluded(last.solution, "refused", None, why)
@@ -220,7 +213,7 @@ def _least_accepted(runs: Trials, least: float) -> float:
     """
     if not runs.tries_the_least:
         return least
-    for _ in range(MOST_SEARCHES):
+    for _ in range(tuning.MOST_SEARCHES):
         least = float(_rounded(min(least, 1.0), 2, ROUND_CEILING))
         if least == 1:
             break  # no error can be asked for that is not below 1
@@ -251,12 +244,12 @@ def _in_the_way(runs: Trials, trial: TrialRun, error: ErrorEstimate | None) -> s
     last_bit = np.spacing(max(abs(begin), abs(end)))
     rates = np.vstack([solution.qd, solution.y_reached[n : 2 * n]])
     turned = last_bit / 2 * np.abs(rates).max()
-    if abs(begin) > abs(end - begin) and turned > LATE * error.largest:
+    if abs(begin) > abs(end - begin) and turned > tuning.LATE * error.largest:
         return f"times from {begin:g} s on are rounded to {last_bit:.0e} s; begin nearer to 0"
     angle = np.abs(solution._run.arguments["q0"]).max()
-    if angle > LARGE_ANGLE and not error.is_lost and error.largest < HOPELESS * angle:
+    if angle > tuning.LARGE_ANGLE and not error.is_lost and error.largest < tuning.HOPELESS * angle:
         bit = np.spacing(angle)
         return f"angles of {angle:.0e} rad are rounded to {bit:.0e} rad; begin with fewer turns"
-    if error.is_lost or error.largest > HOPELESS:
+    if error.is_lost or error.largest > tuning.HOPELESS:
         return "neighbouring motions part too fast for double precision"
     return "tighter tolerances are lost in the rounding of doubles"

@@ -10,6 +10,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from pendcore import methods
+from pendcore._accuracy import tuning
 from pendcore._accuracy.estimate import (
     MORE_STEPS,
     SPARE_OF_SEVERAL,
@@ -25,9 +27,9 @@ from pendcore._accuracy.method_choice import (
     same_or_other,
 )
 from pendcore._accuracy.rounding import moved
-from pendcore._accuracy.tuning import COMPENSATED_BELOW, FEW, FIRST_COUNTS_AS, FOR_BOTH, MOST_STEPS
 from pendcore._core import DefectCorrection
 from pendcore._messages.arguments import time_limit_of
+from pendcore._messages.progress import part_of
 from pendcore._messages.warning import warn
 from pendcore._run.accuracy import DEFECT, Accuracy, Outcome, Paid
 from pendcore._run.call import Choice, Start, resumed, run, silent
@@ -35,13 +37,6 @@ from pendcore._run.error_estimate import ErrorEstimate
 from pendcore._run.solution import Solution
 from pendcore._run.work import correction_work, series_work
 from pendcore._scene.effect_description import Description
-from pendcore.methods import (
-    TIGHTEST,
-    TIGHTEST_IMPLICIT,
-    error_over_rtol,
-    implicit_method,
-    pair_of,
-)
 from pendcore.options import atol_beside
 
 _ADVANCE = 0.35
@@ -123,46 +118,38 @@ class Trials:
 
     @property
     def tightest(self) -> float:
-        return TIGHTEST_IMPLICIT if self.is_stiff else TIGHTEST
+        return methods.TIGHTEST_IMPLICIT if self.is_stiff else methods.TIGHTEST
 
     @property
     def tightest_trial(self) -> TrialRun:
         return min(self.trials, key=lambda trial: trial.scale)
 
     @property
-    def is_out_of_time(self) -> bool:
-        return monotonic() - self.began >= self.time_limit
-
-    @property
     def keeps_few_times(self) -> bool:
         store, t_eval = self.options["store"], self.options["t_eval"]
-        few = t_eval is not None and np.size(t_eval) < FEW
+        few = t_eval is not None and np.size(t_eval) < tuning.FEW
         return store == "end" or (few and store != "dense")
 
     def any_effect(self, has: Callable[[Description], bool]) -> bool:
         """Whether some effect of the scene has a property."""
         return any(has(effect.description) for effect in self.start.scene.effects)
 
-    @property
-    def warns(self) -> bool:
-        """Whether the next run is the first of all, which gives the warnings about the start."""
-        return self.tries_the_least and not self.paid
-
     def method_for(self, scale: float) -> str:
         """Return the method that typically takes the least work to reach an error and verify it."""
         if self.is_stiff:
-            return implicit_method()
-        return pair_of(self.strategy.method or cheapest(self.start, scale / FOR_BOTH))
+            return methods.implicit_method()
+        method = self.strategy.method or cheapest(self.start, scale / tuning.FOR_BOTH)
+        return methods.pair_of(method)
 
     def trial(self, scale: float, method: str) -> TrialRun:
         """Make a run with all the options that the user gave."""
-        rtol = rounded(scale / error_over_rtol(leading(method)), self.tightest)
+        rtol = rounded(scale / methods.error_over_rtol(leading(method)), self.tightest)
         options = self.options
         if self.trials:
             options = options | {"max_steps": self._most_steps()}
         correction = None
         if not self.is_stiff:
-            scale = rtol * error_over_rtol(leading(method))
+            scale = rtol * methods.error_over_rtol(leading(method))
             correction = self.strategy.correction(self.start, scale)
         trial = self._run(self.start, method, rtol, options, correction)
         self.trials.append(trial)
@@ -188,11 +175,11 @@ class Trials:
 
     def second(self, trial: TrialRun, scale: float) -> TrialRun:
         """Make a run that is better than a trial, with other steps, constants and start."""
-        method = implicit_method()
+        method = methods.implicit_method()
         if not self.is_stiff:
             method = same_or_other(trial.method, trial.solution.stats)
         tightest = TIGHTEST_SECOND.get(leading(method), self.tightest)
-        rtol = rounded(scale / error_over_rtol(leading(method)), tightest)
+        rtol = rounded(scale / methods.error_over_rtol(leading(method)), tightest)
         ends_anywhere = any(values.get("terminal") for _, values in self.options["events"])
         options = {
             "t_eval": None if ends_anywhere else second_times(trial.solution),
@@ -221,12 +208,9 @@ class Trials:
         self, trial: TrialRun, found: Callable[[], ErrorEstimate | None]
     ) -> ErrorEstimate | None:
         """Return the error that a trial's own defect shows, found once."""
-        if (trial,) not in self._estimates:
-            error = found()
-            if error is None:
-                return None
+        if (trial,) not in self._estimates and (error := found()) is not None:
             self._estimates[trial,] = error
-        return self._estimates[trial,]
+        return self._estimates.get((trial,))
 
     def distance(self, trial: TrialRun, second: TrialRun) -> float:
         """Return how far a trial is at most from one second run, as a share of the length."""
@@ -274,8 +258,8 @@ class Trials:
         return tuple(paid)
 
     def _most_steps(self, times: int = 1) -> int:
-        enough = MOST_STEPS * max(self.trials[0].solution.stats.accepted, FIRST_COUNTS_AS)
-        return min(times * int(self.options["max_steps"]), enough)
+        first = max(self.trials[0].solution.stats.accepted, tuning.FIRST_COUNTS_AS)
+        return min(times * int(self.options["max_steps"]), tuning.MOST_STEPS * first)
 
     def _as_far_as(self, trial: TrialRun, second: TrialRun) -> TrialRun:
         """Continue a second run to the end of a trial: a terminal event may come a bit later."""
@@ -301,16 +285,17 @@ class Trials:
         correction: DefectCorrection | None = None,
     ) -> TrialRun:
         is_second = start.scene is not self.start.scene
-        compensated = is_second or self.compensated or rtol < COMPENSATED_BELOW
+        compensated = is_second or self.compensated or rtol < tuning.COMPENSATED_BELOW
+        is_first = self.tries_the_least and not self.paid  # it warns of the start
         solution = run(
             start, Choice(method, rtol, atol_beside(rtol), compensated), **options,
             time_limit=self._time_left(), progress=self._progress(),
-            warn=warn if self.warns else silent, watch=correction,
+            warn=warn if is_first else silent, watch=correction,
         )  # fmt: skip
         work = float(solution.stats.nfev)
         if leading(method) == "taylor" and not solution.stats.stiff:
             work *= series_work(start.scene, rtol)
-        scale = rtol * error_over_rtol(leading(method))
+        scale = rtol * methods.error_over_rtol(leading(method))
         trial = TrialRun(method, rtol, scale, work, solution, correction)
         self.paid.append(trial)
         self._done += _ADVANCE * (1 - self._done)
@@ -320,7 +305,6 @@ class Trials:
         return max(self.time_limit - (monotonic() - self.began), 1e-6)
 
     def _progress(self) -> Callable[[float], object] | bool:
-        report, done = self.report, self._done
-        if report is None:
+        if self.report is None:
             return False
-        return lambda fraction: report(done + _ADVANCE * (1 - done) * fraction)
+        return part_of(self.report, self._done, _ADVANCE * (1 - self._done))

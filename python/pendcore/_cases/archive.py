@@ -19,7 +19,7 @@ from typing import IO, Any, BinaryIO
 import numpy as np
 
 from pendcore import _core
-from pendcore._cases.case import Case, refuse_functions
+from pendcore._cases.case import refuse_functions
 from pendcore._cases.case_file import case_from_text
 from pendcore._cases.npz import Entries, entries_of
 from pendcore._cases.whole_file import whole_file
@@ -104,7 +104,8 @@ def load(path: str | os.PathLike[str]) -> Solution:
 
 
 def _loaded(entries: Entries) -> Solution:
-    case = _case(str(entries["case"]))
+    with silence():  # what is implausible was said when the scene was made
+        case = case_from_text(str(entries["case"]), "case")
     state, error = _group(entries, _RUN), _group(entries, _ERROR)
     told = json.loads(str(entries["accuracy"])) if "accuracy" in entries else None
     run = _core.Run.__new__(_core.Run)
@@ -135,11 +136,6 @@ def _group(entries: Entries, prefix: str) -> dict[str, Any]:
     """Return the entries under a prefix; numbers and strings are arrays without axes there."""
     found = {key.removeprefix(prefix): entries[key] for key in entries if key.startswith(prefix)}
     return {key: one.item() if one.ndim == 0 else one for key, one in found.items()}
-
-
-def _case(text: str) -> Case:
-    with silence():  # what is implausible was said when the scene was made
-        return case_from_text(text, "case")
 
 
 def _scene(state: dict[str, Any]) -> Scene:

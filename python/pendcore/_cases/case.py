@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from math import pi
@@ -162,7 +162,10 @@ class Case:
             ("[start]\n", {"q": self.q0, "qd": self.qd0}),
             ("[run]\n", {"t_start": t_start, "t_end": t_end, **options}),
         ]
-        return "\n".join(header + "".join(_lines(table)) for header, table in tables)
+        return "\n".join(
+            header + "".join(f"{key} = {_toml(key, x)}\n" for key, x in table.items())
+            for header, table in tables
+        )
 
     def _values(self) -> dict[str, Any]:
         values = {field.name: getattr(self, field.name) for field in fields(self)}
@@ -195,11 +198,6 @@ def _plain(value: Any) -> Any:
     if {*map(type, value)} <= {float, int}:  # as of a million times
         return tuple(value)
     return tuple(map(_plain, value))
-
-
-def _lines(table: Mapping[str, Any]) -> Iterator[str]:
-    for key, value in table.items():
-        yield f"{key} = {_toml(key, value)}\n"
 
 
 def _toml(key: str, value: Any) -> str:

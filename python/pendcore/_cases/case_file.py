@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import MISSING, fields
 from math import radians
 from pathlib import Path
@@ -89,7 +89,7 @@ def case_from_text(content: str, name: str) -> Case:
     scene = _scene(text)
     q0, qd0 = _start(text, len(scene.links))
     t_span, options = _run(text)
-    if events := _events(text):
+    if events := [_event(text, i, table) for i, table in enumerate(_tables(text, "event"))]:
         options["events"] = events
     title = text.value(("name",)) or ""
     if not isinstance(title, str):
@@ -114,7 +114,7 @@ def _scene(text: TomlText) -> Scene:
                 raise text.error(("link", i), f"link {i + 1} needs {key}")
         links.append(Link(**{key: text.number(("link", i, key)) for key in table}))
     gravity = {"gravity": text.number(("gravity",))} if "gravity" in text.content else {}
-    effects = _effects(text)
+    effects = [_effect(text, i, table) for i, table in enumerate(_tables(text, "effect"))]
     try:
         return Scene(links=links, effects=effects, **gravity)
     except ValueError as error:
@@ -128,13 +128,9 @@ def _tables(text: TomlText, noun: str) -> list[dict[str, Any]]:
     return [dict(table) for table in tables]
 
 
-def _effects(text: TomlText) -> list[Effect]:
-    return [_effect(text, i, table) for i, table in enumerate(_tables(text, "effect"))]
-
-
 def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
     place = ("effect", i)
-    kind = _kind(text, place, table, EFFECT_KEYS, KINDS)
+    kind = _kind(text, place, table)
     where = f"effect {i + 1} ({kind}): "
     for parameter in KINDS[kind].description.parameters:
         value = table.get(parameter.name)
@@ -148,13 +144,9 @@ def _effect(text: TomlText, i: int, table: dict[str, Any]) -> Effect:
         raise text.error(_place(str(error)), str(error)) from None
 
 
-def _events(text: TomlText) -> tuple[Event, ...]:
-    return tuple(_event(text, i, table) for i, table in enumerate(_tables(text, "event")))
-
-
 def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
     place = ("event", i)
-    kind = _kind(text, place, table, EVENT_KEYS, EVENT_KINDS)
+    kind = _kind(text, place, table)
     for f in fields(EVENT_KINDS[kind]):
         if f.default is MISSING and f.name not in table:
             raise text.error(place, f"event {i + 1} ({kind}) needs {f.name}")
@@ -167,29 +159,24 @@ def _event(text: TomlText, i: int, table: dict[str, Any]) -> Event:
         raise text.error(at, f"event {i + 1} ({kind}): {complaint}") from None
 
 
-def _kind(
-    text: TomlText,
-    place: tuple[str, int],
-    table: dict[str, Any],
-    keys: Mapping[str, Sequence[str]],
-    kinds: Collection[str],
-) -> str:
+def _kind(text: TomlText, place: tuple[str, int], table: dict[str, Any]) -> str:
     """Take the kind out of the table of an effect or event, and check its keys."""
     noun, i = place
+    keys = EFFECT_KEYS if noun == "effect" else EVENT_KEYS
     kind = table.pop("kind", None)
     if kind is None:
         raise text.error(place, f"{noun} {i + 1} needs kind: {', '.join(keys)}")
     if not isinstance(kind, str) or kind not in keys:
-        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(noun, kind, keys, kinds)}")
+        raise text.error((*place, "kind"), f"kind = {kind!r}: {_remedy(noun, kind, keys)}")
     text.check_keys(place, _ANYWHERE | {noun: keys[kind]})
     return kind
 
 
-def _remedy(noun: str, kind: object, keys: Iterable[str], kinds: Collection[str]) -> str:
+def _remedy(noun: str, kind: object, keys: Iterable[str]) -> str:
     """Return what to write for a kind that cannot stand in a file."""
     if not isinstance(kind, str):
         return f"must be one of {', '.join(keys)}"
-    if kind in kinds:
+    if kind in (KINDS if noun == "effect" else EVENT_KINDS):
         where = "to the scene" if noun == "effect" else "to events"
         return f"is a function, which a file cannot hold: add it {where} in Python"
     return f"is no {noun}: {did_you_mean(kind, keys)}"

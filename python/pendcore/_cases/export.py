@@ -22,11 +22,9 @@ def to_pandas(solution: Solution) -> pd.DataFrame:
         raise ImportError("to_pandas() " + _HINT.format("pandas")) from None
     links = range(1, len(solution.scene.links) + 1)
     units = {f"q_{i}": "rad" for i in links} | {f"qd_{i}": "rad/s" for i in links}
-    frame = pd.DataFrame(
-        solution.y.T.copy(), columns=list(units), index=pd.Index(solution.t.copy(), name="time")
-    )
-    frame.attrs = {"units": {"time": "s", **units}}
-    frame.attrs |= _case(solution)
+    index = pd.Index(solution.t.copy(), name="time")
+    frame = pd.DataFrame(solution.y.T.copy(), columns=list(units), index=index)
+    frame.attrs = {"units": {"time": "s", **units}, **_case(solution)}
     return frame
 
 

@@ -48,10 +48,8 @@ class Entries(Mapping[str, npt.NDArray[Any]]):
             if dtype.kind not in "biufU":
                 raise ValueError(f"{name}: is of type {dtype}: numbers and texts are read")
             count = math.prod(shape)
-            if (
-                min(shape, default=0) < 0
-                or member.file_size != entry.tell() + count * dtype.itemsize
-            ):
+            length = entry.tell() + count * dtype.itemsize
+            if min(shape, default=0) < 0 or member.file_size != length:
                 raise ValueError(f"{name}: is not as long as its shape {shape}")
             values = np.empty(count, dtype)
             if values.nbytes and entry.readinto(values.view(np.uint8)) != values.nbytes:

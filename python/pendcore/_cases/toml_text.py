@@ -33,17 +33,7 @@ _STRUCTURE = re.compile(r"([\[\]{},=])")
 class TomlText:
     """A TOML document: its content, and errors that name document and line.
 
-    Parameters
-    ----------
-    text : str
-        The document.
-    name : str
-        What messages call it.
-
-    Raises
-    ------
-    ValueError
-        If the text is not TOML, or nested too deeply.
+    Messages call it by its name. A text that is not TOML, or nested too deeply, is a ValueError.
     """
 
     def __init__(self, text: str, name: str) -> None:

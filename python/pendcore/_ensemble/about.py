@@ -29,13 +29,8 @@ def about(scene: Scene, vary: list[str], request: Request) -> dict[str, Any]:
     """
     remedy = ": run the ensemble without a store, and keep its arrays"
     refuse_functions(scene, request.events, "saved", remedy)
-    case = Case(
-        scene=scene,
-        q0=0.0,
-        t_span=request.t_span,
-        name="ensemble",
-        options=request.of_simulate(),
-    )
+    options = request.of_simulate()
+    case = Case(scene=scene, q0=0.0, t_span=request.t_span, name="ensemble", options=options)
     return {VERSION: _core.__version__, CASE: case.to_toml(), KEEP: _kept(request), VARY: vary}
 
 

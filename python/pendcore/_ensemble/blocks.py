@@ -33,18 +33,12 @@ MOST_BLOCKS = 2**18
 
 @dataclass(frozen=True, slots=True)
 class Blocks:
-    """Blocks of an ensemble, in the order of its members.
-
-    Attributes
-    ----------
-    shape : tuple of int
-        That of the ensemble.
-    block_shape : tuple of int
-        That of a block; the last ones along an axis may be shorter.
-    """
+    """Blocks of an ensemble, in the order of its members."""
 
     shape: Index
+    """That of the ensemble."""
     block_shape: Index
+    """That of a block; the last ones along an axis may be shorter."""
 
     @property
     def grid(self) -> Index:

@@ -24,6 +24,7 @@ from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import Arrays, Outcome, run_members
 from pendcore._ensemble.store import Store, write_block
 from pendcore._messages.handed_over import raise_with
+from pendcore._messages.progress import part_of
 
 Report = Callable[[float], object]
 Result = tuple[Block, Arrays | None, dict[str, Any]]
@@ -86,7 +87,7 @@ def run_blocks(
             seconds = until - monotonic()
             if seconds <= 0:  # threads may run a whole block before they look at a limit of 0
                 return
-            part = _part(report, done / total, size_of(block) / total)
+            part = part_of(report, done / total, size_of(block) / total)
             found = run_members(members.block(block), request, workers, seconds, part)
             raise_with(found.take_error())
             if found.ending != "finished":
@@ -207,8 +208,3 @@ def _in_words(error: BaseException) -> BaseException:
             f"have no pendcore {_core.__version__}; what was finished stays"
         )
     return error
-
-
-def _part(report: Report, begin: float, share: float) -> Report:
-    """Return a report for a part of the whole."""
-    return lambda fraction: report(begin + share * fraction)

@@ -426,9 +426,8 @@ class Ensemble:
             raise ImportError("to_xarray() needs xarray: pip install xarray") from None
         axes, request = member_axes(self.shape), self.request
         data: dict[str, Any] = {}
-        coords: dict[str, Any] = {
-            x.name: (x.axes, x.values, {"units": x.unit}) for x in coordinates(self.members)
-        }
+        starts = coordinates(self.members)
+        coords: dict[str, Any] = {x.name: (x.axes, x.values, {"units": x.unit}) for x in starts}
         for one in request.variables(len(self.members.scene.links)):
             values = self.status if one.name == "status" else self._read(one.name)
             data[one.name] = ([*axes, *one.labels], values, {"units": one.unit} if one.unit else {})
@@ -447,14 +446,12 @@ class Ensemble:
         begin, end = self.request.t_span
         lines = [f"{len(self)} members {self.shape}, t = {begin:g} to {end:g} s: {told}"]
         lines += [f"varied: {name}" for name in self.members.vary]
-        for name, reducer in self.request.reducers.items():
-            if reducer.labels(1):
+        for name, one in self.request.reducers.items():
+            if one.labels(1):
                 continue
             found = self[name]
             some = found[np.isfinite(found)]
-            span = (
-                f"{some.min():.6g} to {some.max():.6g} {reducer.unit}" if some.size else "in none"
-            )
+            span = f"{some.min():.6g} to {some.max():.6g} {one.unit}" if some.size else "in none"
             lines.append(f"{name}: in {some.size} of {found.size}, {span}")
         if self.statistics:
             steps = self.statistics["accepted"]

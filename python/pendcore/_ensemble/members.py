@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -17,25 +17,17 @@ Index = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Members:
-    """The members of an ensemble; arrays that were broadcast take the memory of what was given.
-
-    Attributes
-    ----------
-    scene : Scene
-        What they have in common.
-    shape : tuple of int
-        The shape of the ensemble.
-    q0, qd0 : ndarray, (*shape, n)
-        rad, rad/s.
-    vary : dict
-        Parameter name to its values, ``(*shape)``.
-    """
+    """The members of an ensemble; arrays that were broadcast take the memory of what was given."""
 
     scene: Scene
+    """What they have in common."""
     shape: Index
+    """The shape of the ensemble."""
     q0: Floats
     qd0: Floats
+    """(*shape, n), rad and rad/s."""
     vary: dict[str, Floats]
+    """The values of each parameter by its name, (*shape)."""
 
     @property
     def count(self) -> int:
@@ -49,28 +41,22 @@ class Members:
 
     def block(self, block: tuple[slice, ...]) -> Members:
         """Return the members of a block, in memory of their own."""
-        return replace(
-            self,
-            shape=tuple(one.stop - one.start for one in block),
-            q0=self.q0[block].copy(),
-            qd0=self.qd0[block].copy(),
-            vary={name: values[block].copy() for name, values in self.vary.items()},
-        )
+        shape = tuple(one.stop - one.start for one in block)
+        return self._picked(shape, lambda values: values[block].copy())
 
     def selected(self, places: npt.NDArray[np.intp]) -> Members:
         """Return the members at flat places, along one axis."""
         shape = self.shape or (1,)  # an ensemble without axes has one member
         where = np.unravel_index(places, shape)
-        n = self.q0.shape[-1:]
-        return replace(
-            self,
-            shape=places.shape,
-            q0=np.broadcast_to(self.q0, shape + n)[where],
-            qd0=np.broadcast_to(self.qd0, shape + n)[where],
-            vary={
-                name: np.broadcast_to(values, shape)[where] for name, values in self.vary.items()
-            },
+        axes = len(self.shape)
+        return self._picked(
+            places.shape, lambda x: np.broadcast_to(x, shape + x.shape[axes:])[where]
         )
+
+    def _picked(self, shape: Index, pick: Callable[[Floats], Floats]) -> Members:
+        """Return members of a shape, with what is picked of each array."""
+        vary = {name: pick(values) for name, values in self.vary.items()}
+        return replace(self, shape=shape, q0=pick(self.q0), qd0=pick(self.qd0), vary=vary)
 
 
 def members_of(
@@ -93,13 +79,9 @@ def members_of(
             f"the members' axes do not broadcast: {shapes}; the last axis of q0 and qd0, which "
             "runs over the links, is left out here"
         ) from None
-    return Members(
-        scene,
-        shape,
-        np.broadcast_to(angles, (*shape, n)),
-        np.broadcast_to(rates, (*shape, n)),
-        {name: np.broadcast_to(values, shape) for name, values in given.items()},
-    )
+    q, qd = (np.broadcast_to(one, (*shape, n)) for one in (angles, rates))
+    varied = {name: np.broadcast_to(values, shape) for name, values in given.items()}
+    return Members(scene, shape, q, qd, varied)
 
 
 def _start(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
@@ -144,13 +126,10 @@ def coordinates(members: Members) -> list[Coordinate]:
     """Return the coordinates of the members: q0, qd0, and what varies."""
     units = members.scene.parameter_units()
     axes = member_axes(members.shape)
-    found = [
-        Coordinate("q0", *_needed([*axes, "link"], members.q0), "rad"),
-        Coordinate("qd0", *_needed([*axes, "link"], members.qd0), "rad/s"),
-    ]
-    for name, values in members.vary.items():
-        found.append(Coordinate(name, *_needed(axes, values), units[name]))
-    return found
+    starts = ("q0", members.q0, "rad"), ("qd0", members.qd0, "rad/s")
+    found = [Coordinate(name, *_needed([*axes, "link"], x), unit) for name, x, unit in starts]
+    varied = members.vary.items()
+    return [*found, *(Coordinate(name, *_needed(axes, x), units[name]) for name, x in varied)]
 
 
 def members_from(

@@ -61,9 +61,8 @@ def create(path: Path, members: Members, request: Request, chunk: int, time_limi
     """
     zarr = zarr_module()
     if path.exists() and (path.samefile(Path.cwd()) or path.is_mount()):
-        raise OSError(
-            f"store = {str(path)!r}: is the current folder or a disk: name a folder in it"
-        )
+        wanted = "is the current folder or a disk: name a folder in it"
+        raise OSError(f"store = {str(path)!r}: {wanted}")
     told = about(members.scene, list(members.vary), request)  # says what cannot be saved
     require_space(path, bytes_of(members, request))
     count = chunk or usual_block(members, request, time_limit)

@@ -46,24 +46,16 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """The interval, the options and the results that every member is asked for.
-
-    Attributes
-    ----------
-    t_span : (float, float)
-        s.
-    t_eval : ndarray, (n_t,), or None
-        The times at which states are kept, s; None: at the end.
-    reducers : dict
-        Name to reducer.
-    options : dict
-        Those in ``OPTIONS``.
-    """
+    """The interval, the options and the results that every member is asked for."""
 
     t_span: tuple[float, float]
+    """s."""
     t_eval: Floats | None
+    """The times at which states are kept, s, (n_t,); None: at the end."""
     reducers: dict[str, Reducer]
+    """By their names."""
     options: dict[str, Any]
+    """Those in ``OPTIONS``."""
 
     @property
     def events(self) -> tuple[Event, ...]:
@@ -102,9 +94,8 @@ class Request:
 
     def check_reducers(self) -> None:
         """Raise an error for what a reducer cannot be used with."""
-        for kind in {type(one) for one in self.reducers.values() if one.needs_one_tolerance}:
-            for name in ("rtol", "atol"):
-                if np.ndim(self.options[name]) > 0:
-                    raise TypeError(
-                        f"{name}: must be one number with pc.reducers.{kind.__name__}()"
-                    )
+        for name in ("rtol", "atol"):
+            for one in self.reducers.values():
+                if one.needs_one_tolerance and np.ndim(self.options[name]) > 0:
+                    known = f"pc.reducers.{type(one).__name__}()"
+                    raise TypeError(f"{name}: must be one number with {known}")

@@ -16,17 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from pendcore._ensemble.about import (
-    BLOCK,
-    CASE,
-    KEEP,
-    SHAPE,
-    VARY,
-    VERSION,
-    about,
-    read_about,
-    read_sizes,
-)
+from pendcore._ensemble import about
 from pendcore._ensemble.blocks import Block, Blocks, require_few_blocks, size_of
 from pendcore._ensemble.members import Index, Members, member_axes, members_from
 from pendcore._ensemble.new_store import create, named, zarr_module
@@ -37,47 +27,35 @@ from pendcore._ensemble.stored_array import StoredArray, file_of, is_there, move
 from pendcore._ensemble.stored_metadata import DOCUMENT, attributes_of, axes_of
 
 _OTHER = {
-    CASE: "another scene, or other options or events",
-    KEEP: "other reducers",
-    VARY: "other parameters that vary",
+    about.CASE: "another scene, or other options or events",
+    about.KEEP: "other reducers",
+    about.VARY: "other parameters that vary",
 }
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Store:
-    """A store that is open; `opened` makes one.
-
-    Attributes
-    ----------
-    path, place : Path
-        The folder as it was named, and where it is.
-    told : dict
-        The attributes of the group.
-    members, request, blocks
-        What is run, and how it is cut.
-    zarr_arrays : dict
-        The arrays of the result, the status first.
-    folder : os.stat_result
-        The folder that was opened.
-    """
+    """A store that is open; `opened` makes one."""
 
     path: Path
     place: Path
+    """The folder as it was named, and where it is."""
     told: dict[str, Any]
+    """The attributes of the group."""
     members: Members
     request: Request
     blocks: Blocks
+    """What is run, and how it is cut."""
     zarr_arrays: dict[str, Any]
+    """The arrays of the result, the status first."""
     folder: os.stat_result
+    """The folder that was opened."""
 
     @property
     def arrays(self) -> dict[str, StoredArray]:
         """Return the arrays of the result, which read from the disk when they are indexed."""
-        status = self.zarr_arrays["status"]
-        return {
-            name: StoredArray(self.path, self.place, one, status)
-            for name, one in self.zarr_arrays.items()
-        }
+        found, status = self.zarr_arrays.items(), self.zarr_arrays["status"]
+        return {name: StoredArray(self.path, self.place, one, status) for name, one in found}
 
     def not_done(self) -> tuple[int, str]:
         """Return the number of members whose files are missing, and the first missing file.
@@ -194,9 +172,8 @@ def _zarr_array(path: Path, name: str, mode: str) -> Any:
         raise
     except Exception as error:  # whatever Zarr makes of a value that it does not expect
         raise ValueError(f"{name}/{DOCUMENT}: {error}") from error
-    return zarr.Array(
-        zarr.AsyncArray(found.metadata, found.store_path, config={"write_empty_chunks": True})
-    )
+    config = {"write_empty_chunks": True}
+    return zarr.Array(zarr.AsyncArray(found.metadata, found.store_path, config=config))
 
 
 @contextmanager
@@ -244,22 +221,23 @@ def opened(path: Path, mode: str = "r") -> Store:
 def _opened(path: Path, mode: str) -> Store:
     place = path.resolve()  # whatever becomes the current folder
     told = attributes_of(place)
-    shape, block_shape = read_sizes(told, SHAPE, 0), read_sizes(told, BLOCK, 1)
+    shape = about.read_sizes(told, about.SHAPE, 0)
+    block_shape = about.read_sizes(told, about.BLOCK, 1)
     if len(shape) != len(block_shape):
-        raise ValueError(f"{BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
+        raise ValueError(f"{about.BLOCK} = {list(block_shape)}: must have {len(shape)} numbers")
     blocks = Blocks(shape, block_shape)
     require_few_blocks(blocks)
     t_eval = _read(place, "time", {"time": None})[1] if (place / "time").exists() else None
-    scene, request = read_about(told, t_eval)
+    scene, request = about.read_about(told, t_eval)
     n, axes = len(scene.links), member_axes(shape)
     lengths: dict[str, int | None] = dict(zip(axes, shape, strict=True))
     found = {name: _read(place, name, lengths | {"link": n}) for name in ("q0", "qd0")}
-    found |= {name: _read(place, name, lengths) for name in told[VARY]}
+    found |= {name: _read(place, name, lengths) for name in told[about.VARY]}
     zarr_arrays: dict[str, Any] = {}
     for one in request.variables(n):
         name = PureWindowsPath(one.name)  # it knows the separators of every system
         if name.drive or name.root or ".." in name.parts:
-            raise ValueError(f"{KEEP}: {one.name!r} is no name of a reducer")
+            raise ValueError(f"{about.KEEP}: {one.name!r} is no name of a reducer")
         own = lengths | dict(zip(one.labels, one.shape, strict=True))
         chunk = [max(size, 1) for size in (*block_shape, *one.shape)]
         axes_of(place, one.name, np.dtype(one.dtype).name, own, chunk)
@@ -280,12 +258,12 @@ def _read(path: Path, name: str, lengths: Mapping[str, int | None]) -> tuple[lis
 def continued(path: Path, members: Members, request: Request) -> Store:
     """Open a store to go on with it. It must be that of the same ensemble and version."""
     store = opened(path, "r+")
-    told = about(members.scene, list(members.vary), request)
+    told = about.about(members.scene, list(members.vary), request)
     for name, value in told.items():
         there = store.told[name]
         if there != value:
-            what = f"pendcore {there}, not {value}" if name == VERSION else _OTHER[name]
-            if name == CASE:
+            what = f"pendcore {there}, not {value}" if name == about.VERSION else _OTHER[name]
+            if name == about.CASE:
                 old, new = there.splitlines(), value.splitlines()
                 was = next((line for line in old if line not in new), "nothing")
                 what += f" ({was}, and now {next((x for x in new if x not in old), 'nothing')})"

@@ -14,26 +14,19 @@ from pendcore._ensemble.stored_metadata import DOCUMENT
 
 @dataclass(frozen=True, slots=True)
 class StoredArray:
-    """An array of results on disk; an index reads from it.
-
-    Attributes
-    ----------
-    path, place : Path
-        The store as it was named, and where it is.
-    array, status : zarr.Array
-        The array, and that of the statuses, whose chunks say which blocks were written.
-    """
+    """An array of results on disk; an index reads from it."""
 
     path: Path
     place: Path
+    """The store as it was named, and where it is."""
     array: Any
     status: Any
+    """The array, and that of the statuses, whose chunks say which blocks were written."""
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Return the shape, without reading."""
-        shape: tuple[int, ...] = self.array.shape
-        return shape
+        return tuple(self.array.shape)
 
     @property
     def dtype(self) -> np.dtype[Any]:

@@ -46,9 +46,7 @@ def axes_of(
     names = told.get("dimension_names") or []  # Zarr writes none for an array without axes
     try:
         axes = [axis for axis in lengths if chunk is not None or axis in names]
-        shape: list[Any] = [
-            told["shape"][0] if lengths[axis] is None else lengths[axis] for axis in axes
-        ]
+        shape: list[Any] = [told["shape"][0] if lengths[x] is None else lengths[x] for x in axes]
         sizes = told["chunk_grid"]["configuration"]["chunk_shape"] if chunk is None else chunk
         pairs = zip(sizes, shape, strict=True)
         fits = all(type(one) is int and 1 <= one <= max(size, 1) for one, size in pairs)

@@ -95,8 +95,7 @@ def resolved(
     with np.errstate(invalid="ignore"):
         agree = (np.abs(one - two) <= limit) | (np.isnan(one) & np.isnan(two))
     axes = tuple(range(len(found.shape), one.ndim))
-    told: npt.NDArray[np.bool_] = agree.all(axis=axes) & found.success & other.success
-    return told
+    return np.asarray(agree.all(axis=axes) & found.success & other.success)
 
 
 def _require_same_request(found: Ensemble, other: Ensemble) -> None:

@@ -16,7 +16,7 @@ from pendcore._ensemble.new_store import bytes_of, in_words
 from pendcore._ensemble.request import Request
 from pendcore._ensemble.run import run_members
 from pendcore._ensemble.store import store_for
-from pendcore._messages.arguments import require_known, time_limit_of, whole_number
+from pendcore._messages.arguments import at_least, require_known, time_limit_of
 from pendcore._messages.handed_over import hand_over, raise_with
 from pendcore._messages.progress import Progress, reporting
 from pendcore._messages.warning import PendcoreWarning, warn
@@ -50,8 +50,8 @@ def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble
     """Run members; arguments are checked before the first of them."""
     require_on_failure(how.on_failure)
     request.check_reducers()
-    workers = _at_least_1("workers", how.workers, "threads")
-    chunk = _at_least_1("chunk", how.chunk, "members")
+    workers = 0 if how.workers is None else at_least("workers", how.workers, 1)
+    chunk = 0 if how.chunk is None else at_least("chunk", how.chunk, 1)
     limit = time_limit_of(how.time_limit)
     until = monotonic() + limit
     executor, path = how.executor, how.store
@@ -75,16 +75,6 @@ def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble
     result = Ensemble(members, request, found.arrays, found.ending, found.statistics)
     raise_with(found.take_error(), ensemble=result)
     return _checked(result, how.on_failure)
-
-
-def _at_least_1(name: str, value: Any, unit: str) -> int:
-    """Return a whole number from 1, or 0 for None."""
-    if value is None:
-        return 0
-    count = whole_number(name, value)
-    if count < 1:
-        raise ValueError(f"{name} = {count}: must be 1 or more {unit}")
-    return count
 
 
 def _checked(found: Ensemble, on_failure: str) -> Ensemble:

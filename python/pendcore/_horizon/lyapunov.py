@@ -131,8 +131,7 @@ class LyapunovExponents:
         (ax,) = new_axes((6.4, 4.0)) if ax is None else (ax,)
         properties = {"color": theme_of(ax).ink, **line_properties}
         lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
-        ax.set_xlabel("t (s)")
-        ax.set_ylabel("finite-time Lyapunov exponents (1/s)")
+        ax.set(xlabel="t (s)", ylabel="finite-time Lyapunov exponents (1/s)")
         ax.axhline(0.0, color=theme_of(ax).quiet, linewidth=0.8, zorder=0)
         ax.margins(x=0)
         grid(ax)
@@ -235,22 +234,15 @@ def lyapunov(
     return result
 
 
-def lyapunov_of(
-    solution: Solution,
-    count: int | None,
-    transient: float,
-    t_eval: npt.ArrayLike | None,
-    progress: Progress,
-) -> LyapunovExponents:
+def lyapunov_of(solution: Solution, **how: Any) -> LyapunovExponents:
     """Compute the exponents of a solution's motion to its end, at its tolerances."""
     asked = solution._run.arguments
     if solution._run.t_reached == asked["t_start"]:
         raise ValueError("lyapunov: the run ended where it began: nothing had time to grow")
     return lyapunov(
         solution.scene, (asked["t_start"], solution._run.t_reached), asked["q0"], asked["qd0"],
-        count=count, transient=transient, rtol=float(np.min(asked["rtol"])),
-        atol=float(np.min(asked["atol"])), t_eval=t_eval, max_step=asked["max_step"],
-        progress=progress,
+        rtol=float(np.min(asked["rtol"])), atol=float(np.min(asked["atol"])),
+        max_step=asked["max_step"], **how,
     )  # fmt: skip
 
 
@@ -259,13 +251,11 @@ def _exponents(found: dict[str, Any], since: float, n: int) -> LyapunovExponents
     if len(growth):
         growth = growth - growth[0]
     return LyapunovExponents(
-        t=found["t"],
+        **{name: found[name] for name in ("t", "status", "message")},
         growth=growth,
         since=since,
         q=found["states"][:, :n],
         qd=found["states"][:, n:],
-        status=found["status"],
-        message=found["message"],
         success=found["status"] == "finished",
         stats=Statistics(**found["statistics"]),
     )

@@ -69,9 +69,7 @@ def text(name: str, value: object) -> str:
     return value
 
 
-def listed_names(
-    argument: str, given: object, example: str, kind: type[Any] = str
-) -> tuple[Any, ...]:
+def listed_names(argument: str, given: object, example: str, kind: type = str) -> tuple[Any, ...]:
     """Return what a list of names, or of another kind, holds; a text alone is none."""
     if isinstance(given, Iterable) and not isinstance(given, str):
         names = tuple(given)
@@ -98,6 +96,14 @@ def whole_number(name: str, value: Any, most: int = 2**31 - 1) -> int:
         raise TypeError(f"{name} = {value!r}: must be a whole number") from None
     if abs(whole) > most:
         raise ValueError(f"{name}: is too large: must be at most {most}")
+    return whole
+
+
+def at_least(name: str, value: Any, least: int) -> int:
+    """Return a whole number from ``least`` on as an int."""
+    whole = whole_number(name, value)
+    if whole < least:
+        raise ValueError(f"{name} = {whole}: must be >= {least}")
     return whole
 
 
@@ -174,9 +180,8 @@ def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     try:
         array = np.asarray(value)
     except ValueError:
-        raise ValueError(
-            f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
-        ) from None
+        told = f"{name}: rows of different lengths: must be an array{in_unit(unit)}"
+        raise ValueError(told) from None
     if array.dtype.kind == "O" and all(type(x) is int for x in array.flat):
         try:  # integers beyond 64 bits
             array = array.astype(np.float64)
@@ -228,9 +233,8 @@ def link_array(name: str, value: npt.ArrayLike, n: int, unit: str) -> Floats:
     """Return an array whose last axis runs over the n links."""
     array = finite_array(name, value, unit)
     if array.ndim == 0 or array.shape[-1] != n:
-        raise ValueError(
-            f"{name}: shape {array.shape}: must be (..., {n}), one value per link ({unit})"
-        )
+        wanted = f"must be (..., {n}), one value per link ({unit})"
+        raise ValueError(f"{name}: shape {array.shape}: {wanted}")
     return array
 
 
@@ -238,6 +242,12 @@ def listed(values: Sequence[float] | Floats, most: int = 6) -> str:
     """Return numbers as people read them: six digits, and dots in place of the last of many."""
     some = [f"{x:.6g}" for x in values[:most]]
     return ", ".join([*some, "..."] if len(values) > most else some)
+
+
+def in_a_row(words: Iterable[str], before_last: str = "and") -> str:
+    """Return ``a``, ``a and b``, ``a, b and c``."""
+    *most, last = words
+    return f"{', '.join(most)} {before_last} {last}" if most else last
 
 
 def _too_large(name: str, unit: str) -> ValueError:

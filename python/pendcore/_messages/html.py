@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 import numpy as np
-import numpy.typing as npt
+
+from pendcore._messages.arguments import Floats
 
 _LEFT = "text-align: left; vertical-align: top"
 _WIDTH = 180
@@ -15,17 +16,14 @@ _WIDTH = 180
 
 def table(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
     """Return a table; without a head, the first cell of each row names it."""
-    lines = []
-    if head:
-        cells = "".join(f"<th style='{_LEFT}'>{escape(cell)}</th>" for cell in head)
-        lines.append(f"<tr>{cells}</tr>")
-    for row in rows:
-        first = "td" if head else "th"
-        cells = "".join(
-            f"<{kind} style='{_LEFT}'>{escape(cell)}</{kind}>"
-            for kind, cell in zip([first, *["td"] * (len(row) - 1)], row, strict=True)
-        )
-        lines.append(f"<tr>{cells}</tr>")
+
+    def line(first: str, others: str, row: Sequence[str]) -> str:
+        kinds = [first, *[others] * (len(row) - 1)]
+        cells = (f"<{x} style='{_LEFT}'>{escape(y)}</{x}>" for x, y in zip(kinds, row, strict=True))
+        return f"<tr>{''.join(cells)}</tr>"
+
+    lines = [line("th", "th", head)] if head else []
+    lines += [line("td" if head else "th", "td", row) for row in rows]
     return f"<table>{''.join(lines)}</table>"
 
 
@@ -35,11 +33,7 @@ def beside(*parts: str) -> str:
     return f"<div style='display: flex; flex-wrap: wrap; align-items: flex-start'>{inner}</div>"
 
 
-def drawing(
-    poses: Iterable[npt.NDArray[np.float64]],
-    path: npt.NDArray[np.float64] | None = None,
-    title: str = "",
-) -> str:
+def drawing(poses: Iterable[Floats], path: Floats | None, title: str = "") -> str:
     """Return chains, (n+1, 2) places in m each, as a drawing; y points down, as in SVG itself.
 
     The last pose is the plainest, those before it are the fainter the earlier. ``path``, (k, 2), is
@@ -54,21 +48,15 @@ def drawing(
     scale = 0.84 * _WIDTH / size
     shift = _WIDTH / 2 - scale * (low + high) / 2
 
-    def points(line: npt.NDArray[np.float64]) -> str:
-        return " ".join(f"{x:.1f},{y:.1f}" for x, y in scale * line + shift)
+    def drawn(line: Floats, stroke: str, width: int, opacity: float) -> str:
+        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in scale * line + shift)
+        how = f"fill='none' stroke='{stroke}' stroke-width='{width}' opacity='{opacity:.2f}'"
+        return f"<polyline points='{points}' {how} stroke-linecap='round' stroke-linejoin='round'/>"
 
-    lines = []
-    if path is not None:
-        lines.append(
-            f"<polyline points='{points(path)}' fill='none' stroke='#1f5fa8' stroke-width='1' "
-            "opacity='0.6'/>"
-        )
+    lines = [] if path is None else [drawn(path, "#1f5fa8", 1, 0.6)]
     for k, pose in enumerate(shown, 1):
         opacity = 1.0 if k == len(shown) else 0.15 + 0.45 * k / len(shown)
-        lines.append(
-            f"<polyline points='{points(pose)}' fill='none' stroke='currentColor' stroke-width='3' "
-            f"stroke-linecap='round' stroke-linejoin='round' opacity='{opacity:.2f}'/>"
-        )
+        lines.append(drawn(pose, "currentColor", 3, opacity))
     return (
         f"<svg width='{_WIDTH}' height='{_WIDTH}' role='img'><title>{escape(title)}</title>"
         f"{''.join(lines)}</svg>"

@@ -70,9 +70,8 @@ def callback(
     if progress is False:
         return None
     if not callable(progress):
-        raise TypeError(
-            f"progress = {progress!r}: must be None, True, False, or a function of a fraction"
-        )
+        wanted = "must be None, True, False, or a function of a fraction"
+        raise TypeError(f"progress = {progress!r}: {wanted}")
     return progress
 
 
@@ -82,8 +81,11 @@ def close(report: Callable[[float], object] | None) -> None:
         report.close()
 
 
-def _unheard(fraction: float) -> None:
-    """Take what nobody wants to know."""
+def part_of(
+    report: Callable[[float], object], begin: float, share: float
+) -> Callable[[float], object]:
+    """Return what reports the progress of a part of a whole, which begins there."""
+    return lambda fraction: report(begin + share * fraction)
 
 
 @contextmanager
@@ -93,6 +95,7 @@ def reporting(
     """Yield what takes the fraction done, and end its bar; see `callback`."""
     report = callback(progress, what, count, unit)
     try:
-        yield _unheard if report is None else report  # a list that is called is false while empty
+        # A list that is called is false while it is empty.
+        yield (lambda fraction: None) if report is None else report
     finally:
         close(report)

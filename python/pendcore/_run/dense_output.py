@@ -16,7 +16,8 @@ def with_dense_output(solution: Solution) -> Solution:
     """See `Solution.with_dense_output`; what it raises has the words of ``sol(t)``."""
     if solution.store == "dense":
         return solution
-    size = _bytes_of(solution)
+    dimension = 2 * len(solution.scene.links) + len(solution._run.ledger)
+    size = 8 * solution.stats.accepted * (solution._run.dense_degree + 1) * dimension  # bytes
     if size > MOST_BYTES:
         raise _refusal(solution, f"it would take {size / 2**30:.3g} GiB to do so for the drawing")
     try:
@@ -31,12 +32,6 @@ def with_dense_output(solution: Solution) -> Solution:
             "on more than its arguments, or another version of pendcore made it",
         )
     return again
-
-
-def _bytes_of(solution: Solution) -> int:
-    """Return the size of the dense output that a run would have had."""
-    dimension = 2 * len(solution.scene.links) + len(solution._run.ledger)
-    return 8 * solution.stats.accepted * (solution._run.dense_degree + 1) * dimension
 
 
 def _simulated_anew(solution: Solution) -> Solution:

@@ -139,9 +139,7 @@ def energy_over(
         total = kinetic + potential
     if not asked["ledger"]:
         return Energy(kinetic, potential, total)
-    start = scene._compiled.energy(
-        np.array([asked["t_start"]]), asked["q0"][np.newaxis], asked["qd0"][np.newaxis]
-    )
+    start = scene._compiled.energy(*(np.array([asked[x]]) for x in ("t_start", "q0", "qd0")))
     with np.errstate(all="ignore"):
         booked = (-entry if name in LOSSES else entry for name, entry in entries.items())
         residual = total - sum(start) - sum(booked, np.zeros(len(total)))

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pendcore._messages.arguments import in_a_row
 from pendcore._run.solution import Solution
 from pendcore._scene.scene import Scene
 from pendcore.effects import KINDS
@@ -66,7 +67,7 @@ class EnergyDrift(NamedTuple):
     def in_words(self) -> str:
         """How large the drift is, in words."""
         if self.changed_by and not self.ledger:
-            return f"not known (changed by {_listed(self.changed_by)}): run with ledger=True"
+            return f"not known (changed by {in_a_row(self.changed_by)}): run with ledger=True"
         size, share = self.largest_drift, self.relative_drift
         of_kinetic = "" if share is None else f", {share:.1e} of the largest kinetic energy"
         is_number = size is not None and np.isfinite(size)
@@ -84,7 +85,9 @@ def energy_drift(solution: Solution, every: int = 1) -> EnergyDrift:
     times = np.concatenate([[asked["t_start"]], run.t[::every], [run.t_reached]])
     n = states.shape[1] // 2
     kinetic, potential = solution.scene._compiled.energy(times, states[:, :n], states[:, n:])
-    working = _kinds_that_do_work(solution.scene)
+    effects = solution.scene.effects
+    present = {effect.kind for effect in effects if effect.description.account != "none"}
+    working = [kind for kind in KINDS if kind in present]
     with np.errstate(all="ignore"):  # a blow-up's energies may be infinite; that is told in words
         total = kinetic + potential
         drift, moving = float(np.abs(total - total[0]).max()), float(kinetic.max())
@@ -118,12 +121,6 @@ def trusted_digits(solution: Solution) -> int:
     return MOST if share == 0 else min(max(floor(-log10(share)), FEWEST), MOST)
 
 
-def _kinds_that_do_work(scene: Scene) -> list[str]:
-    """Return the kinds of effects that change the total energy."""
-    present = {effect.kind for effect in scene.effects if effect.description.account != "none"}
-    return [kind for kind in KINDS if kind in present]
-
-
 def _lowest_potential(scene: Scene) -> float:
     """Return the lowest potential energy: every link hangs, or stands if its weight pulls up, J.
 
@@ -137,8 +134,3 @@ def _lowest_potential(scene: Scene) -> float:
     _, whole = scene._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     _, springs = weightless._compiled.energy(np.zeros(len(q)), q, np.zeros_like(q))
     return np.inf if springs.min() < 0 else -float(np.abs(whole - springs).sum())
-
-
-def _listed(kinds: list[str]) -> str:
-    *most, last = kinds
-    return f"{', '.join(most)} and {last}" if most else last

@@ -74,9 +74,7 @@ class LargestReaction(NamedTuple):
     steady: bool
 
 
-def largest_reactions(
-    scene: Scene, run: _core.Run, progress: Progress = None
-) -> list[LargestReaction]:
+def largest_reactions(scene: Scene, run: _core.Run, progress: Progress) -> list[LargestReaction]:
     """See `pendcore.Solution.largest_reactions`."""
     search = _Search(scene, run)
     if run.store != "dense":
@@ -105,17 +103,9 @@ class _Search:
         """Return the largest forces; an empty list where there were no times."""
         if np.isinf(self.least).all() and (self.best < 0).all():
             return []
-        steady = (self.best < inf) & (self.least >= self.best * (1 - STEADY))
-        return [
-            LargestReaction(
-                joint=i + 1,
-                force=float(self.best[i]),
-                t=float(self.when[i]),
-                just_before=bool(self.before[i]),
-                steady=is_over_time and bool(steady[i]),
-            )
-            for i in range(self.n)
-        ]
+        steady = (self.best < inf) & (self.least >= self.best * (1 - STEADY)) & is_over_time
+        columns = (x.tolist() for x in (self.best, self.when, self.before, steady))
+        return [LargestReaction(*row) for row in zip(range(1, self.n + 1), *columns, strict=True)]
 
     def pieces(self) -> Iterator[tuple[Floats, Floats]]:
         """Yield the times at which pieces of steps begin and end, in blocks of bounded size."""
@@ -198,8 +188,7 @@ class _Search:
             k = int(np.where(jumps[:, i], limit[:, i], -inf).argmax())
             if jumps[k, i]:
                 self.take_one(i, float(t[k, 2]), float(limit[k, i]), just_before=True)
-        found: Floats = np.where(jumps, limit, after)
-        return found
+        return np.asarray(np.where(jumps, limit, after))
 
     def _polish(self, times: Floats, grid: Floats) -> None:
         """Refine the peaks of a grid of times (m, k) and sizes (m, k, n)."""
@@ -231,5 +220,4 @@ def _may_exceed(sizes: Floats, best: Floats) -> npt.NDArray[np.bool_]:
     beside = np.pad(sizes, ((0, 0), (1, 1)), constant_values=-inf)
     is_peak = (sizes >= beside[:, :-2]) & (sizes >= beside[:, 2:]) & np.isfinite(sizes)
     rise = np.where(is_peak, sizes - least, 0.0)
-    may: npt.NDArray[np.bool_] = (rise > ROUNDING * sizes) & (sizes + rise > best[:, None])
-    return may
+    return np.asarray((rise > ROUNDING * sizes) & (sizes + rise > best[:, None]))

@@ -43,20 +43,11 @@ if TYPE_CHECKING:
 class Solution:
     """The result of `simulate`.
 
-    Call it, ``sol(t)``, for the state between the steps. It pickles; `save` and `load` keep it all.
+    Call it, ``sol(t)``, for the state between the steps; ``t``, ``q`` and ``qd`` are what it kept.
+    It pickles; `save` and `load` keep it all.
 
     Attributes
     ----------
-    t : ndarray, (n_t,)
-        Times of the accepted steps, or ``t_eval``, s.
-    q, qd : ndarray, (n_t, n)
-        Absolute angles, rad, and their rates, rad/s. ``y``, (2n, n_t), has both as SciPy does.
-    status, message, success : str, str, bool
-        How the run ended: in a word, in a sentence, and whether as it was asked to.
-    events : list of FoundEvents
-        What was found of each event asked for.
-    stats : Statistics
-        What the run took.
     scene : Scene
         What moved.
     known_error : ErrorEstimate or None
@@ -150,15 +141,7 @@ class Solution:
 
     @property
     def y_reached(self) -> Floats:
-        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s).
-
-        Examples
-        --------
-        >>> how = {"t_eval": [9.0], "max_steps": 5, "on_failure": "ignore"}
-        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 9), q0=0.5, **how)
-        >>> len(sol.t), f"{sol.t_reached:.1f} s", sol.y_reached.shape
-        (0, '0.5 s', (4,))
-        """
+        """The state at ``t_reached``, (2n,): q_1..q_n (rad), then qd_1..qd_n (rad/s)."""
         return self._run.y_reached
 
     def __call__(self, t: npt.ArrayLike) -> Floats:
@@ -490,15 +473,12 @@ class Solution:
     ) -> float:
         """Return how far to trust the run: the time at which its error passes a limit, s.
 
-        The answer errs on the safe side; it is the end of the run if the error stays within the
-        limit. See `ErrorEstimate.valid_until`.
+        The answer errs on the safe side.
 
         Parameters
         ----------
-        limit : float
-            rad; with ``of="position"`` a share of the total length.
-        of : {"angle", "position"}
-            It limits the angles of the links, or the positions of joints and tip.
+        limit, of
+            As in `ErrorEstimate.valid_until`.
         time_limit : float, optional
             As in `estimate_error`; the answer is then how far the run is known to hold by then.
 
@@ -556,7 +536,8 @@ class Solution:
         """
         from pendcore._horizon.lyapunov import lyapunov_of
 
-        return lyapunov_of(self, count, transient, t_eval, progress)
+        how = {"count": count, "transient": transient, "t_eval": t_eval, "progress": progress}
+        return lyapunov_of(self, **how)
 
     def with_dense_output(self) -> Solution:
         """Return the run with a state at any time; one that kept none is run again, to the bit.
@@ -759,8 +740,7 @@ class Solution:
         ax : Axes or array of Axes, optional
             One axes; for angles, rates and phase also one for each link, for reactions one for each
             joint, for energy as many as it has panels. Default: a new figure of pyplot's, which is
-            not shown.
-            Where curves are drawn already, the next ones are dashed.
+            not shown. Where curves are drawn already, the next ones are dashed.
         label : str, optional
             Name of this solution in the legend.
         horizon : float, optional

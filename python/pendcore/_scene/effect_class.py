@@ -44,11 +44,8 @@ class Described(Parametrized):
 
     def _for_the_core(self) -> dict[str, Any]:
         """Return every parameter, parts as dictionaries."""
-        values = {p.name: getattr(self, p.name) for p in self.description.parameters}
-        return {
-            name: value._for_the_core() if isinstance(value, Described) else value
-            for name, value in values.items()
-        }
+        given = ((p.name, getattr(self, p.name)) for p in self.description.parameters)
+        return {name: x._for_the_core() if isinstance(x, Described) else x for name, x in given}
 
 
 class Part(Described):

@@ -17,40 +17,27 @@ from pendcore._messages.arguments import in_unit
 
 
 class Parameter(NamedTuple):
-    """One parameter of an effect, or of a part of one.
-
-    Attributes
-    ----------
-    name : str
-        As in Python and in case files.
-    symbol : str
-        As in the law; empty for what is no quantity.
-    unit : str
-        SI; empty for what has none, ``"1"`` for a ratio.
-    sentence : str
-        What it is.
-    type : str
-        ``"bool"``, ``"int"``, ``"float"``, ``"optional float"``, ``"pair"``, ``"floats"``,
-        ``"address"``, ``"function"``, or the name of a part.
-    range : str
-        Allowed values, in words.
-    required : bool
-        Whether it has no default.
-    default : object
-        None where there is none, and where leaving it out means something of its own.
-    components : (str, str)
-        The names of the two numbers of a pair.
-    """
+    """One parameter of an effect, or of a part of one."""
 
     name: str
+    """As in Python and in case files."""
     symbol: str
+    """As in the law; empty for what is no quantity."""
     unit: str
+    """SI; empty for what has none, ``"1"`` for a ratio."""
     sentence: str
+    """What it is."""
     type: str
+    """``"bool"``, ``"int"``, ``"float"``, ``"optional float"``, ``"pair"``, ``"floats"``,
+    ``"address"``, ``"function"``, or the name of a part."""
     range: str
+    """Allowed values, in words."""
     required: bool
+    """Whether it has no default."""
     default: Any
+    """None where there is none, and where leaving it out means something of its own."""
     components: tuple[str, str] = ("x", "y")
+    """The names of the two numbers of a pair."""
 
     @property
     def optional(self) -> bool:
@@ -64,52 +51,35 @@ class Parameter(NamedTuple):
 
 
 class Description(NamedTuple):
-    """One kind of effect, or of a part of effects.
-
-    Attributes
-    ----------
-    name : str
-        The name of the class.
-    sentence : str
-        What it is.
-    parameters : tuple of Parameter
-        The required ones first.
-    kind : str
-        As in case files; empty for a part.
-    law, source : str
-        The equation, and where it comes from.
-    account : str
-        Where the ledger books its work; ``"none"`` where there is none.
-    bounds_joint : bool
-        Whether the effect may forbid a start that is next to one that it allows.
-    jumps_or_sticks : bool
-        Whether the motion jumps or sticks under it, each time at an instant of its own.
-    moves_pivot : bool
-        Whether it moves the pivot.
-    is_function : bool
-        Whether it is a function of the user's, of whose cost and smoothness nothing is known.
-    damps_small_motions : bool
-        Whether it damps motions however small they are, so that a run forgets its errors.
-    examples : str
-        Calls that make one, a line each, after lines that prepare them.
-    outcome : str
-        What the first of them does to the textbook's rods within 1 s; empty if that is not known.
-    """
+    """One kind of effect, or of a part of effects."""
 
     name: str
+    """The name of the class."""
     sentence: str
+    """What it is."""
     parameters: tuple[Parameter, ...]
+    """The required ones first."""
     kind: str = ""
+    """As in case files; empty for a part."""
     law: str = ""
     source: str = ""
+    """The equation, and where it comes from."""
     account: str = "none"
+    """Where the ledger books its work; ``"none"`` where there is none."""
     bounds_joint: bool = False
+    """Whether the effect may forbid a start that is next to one that it allows."""
     jumps_or_sticks: bool = False
+    """Whether the motion jumps or sticks under it, each time at an instant of its own."""
     moves_pivot: bool = False
+    """Whether it moves the pivot."""
     is_function: bool = False
+    """Whether it is a function of the user's, of whose cost and smoothness nothing is known."""
     damps_small_motions: bool = False
+    """Whether it damps motions however small they are, so that a run forgets its errors."""
     examples: str = ""
+    """Calls that make one, a line each, after lines that prepare them."""
     outcome: str = ""
+    """What the first of them does to the textbook's rods within 1 s; empty if that is not known."""
 
     @property
     def calls(self) -> tuple[str, ...]:
@@ -277,8 +247,7 @@ def _broken(call: str, room: int, indent: str = "... ") -> str:
 def _meaning(parameter: Parameter) -> str:
     """Return what a parameter is, its symbol, its range and its unit."""
     symbol = f"{parameter.symbol}: " if parameter.symbol else ""
-    sentence = (
-        parameter.sentence if symbol else parameter.sentence[:1].upper() + parameter.sentence[1:]
-    )
+    told = parameter.sentence
+    sentence = told if symbol else told[:1].upper() + told[1:]
     allowed = f"; {parameter.range}" if parameter.range else ""
     return f"{symbol}{sentence}{allowed}{in_unit(parameter.unit)}."

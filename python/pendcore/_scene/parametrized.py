@@ -23,9 +23,7 @@ class Parametrized:
 
     def particulars(self) -> dict[str, Any]:
         """Return the parameters that differ from their defaults, enough to make it again."""
-        return {
-            f.name: value for f in fields(self) if (value := getattr(self, f.name)) != f.default
-        }
+        return {f.name: x for f in fields(self) if (x := getattr(self, f.name)) != f.default}
 
     def replace(self, **changes: Any) -> Self:
         """Return an object with other parameters; those not given stay."""
@@ -76,9 +74,8 @@ def tuple_of(
         raise TypeError(f"{noun}s = {values!r}: {remedy}{alone}") from None
     for i, value in enumerate(values, start=1):
         if isinstance(value, type) and issubclass(value, kind):
-            raise TypeError(
-                f"{noun} {i} = {value.__name__}: must be a {_AN_OBJECT[noun]}; got the class itself"
-            )
+            wanted = f"must be a {_AN_OBJECT[noun]}; got the class itself"
+            raise TypeError(f"{noun} {i} = {value.__name__}: {wanted}")
         if not isinstance(value, kind):
             if callable(value) and not isinstance(value, type) and noun in _OF_FUNCTIONS:
                 remedy = f"is a function: give {_OF_FUNCTIONS[noun]}"

@@ -28,18 +28,10 @@ exit status: 0 fine, 1 the run or a file failed (all else is written), 2 wrong u
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command.
+    """Run the command with arguments, by default those of the process; return its exit status.
 
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        Arguments without the name of the program. Default: those of the process.
-
-    Returns
-    -------
-    int
-        Exit status: 0 fine, 1 the run failed or was interrupted, or a file is not written, 2 wrong
-        usage, 141 nobody reads.
+    That is 0: fine, 1: the run failed or was interrupted, or a file is not written, 2: wrong usage,
+    141: nobody reads.
     """
     _make_surroundings_safe()
     parser, commands = _parser()
@@ -96,15 +88,11 @@ def _print_no_more() -> None:
 
 def _parser() -> tuple[argparse.ArgumentParser, Any]:
     """Return the parser, and that of the sub-commands."""
-    parser = argparse.ArgumentParser(
-        prog="pendcore",
-        description="Direct dynamics of pendulum chains.",
-        epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument(
-        "--version", action=_Version, nargs=0, help="show version, instruction set and compiler"
-    )
+    raw: Any = {"formatter_class": argparse.RawDescriptionHelpFormatter}
+    told = "Direct dynamics of pendulum chains."
+    parser = argparse.ArgumentParser(prog="pendcore", description=told, epilog=_EXAMPLES, **raw)
+    told = "show version, instruction set and compiler"
+    parser.add_argument("--version", action=_Version, nargs=0, help=told)
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command in (run, explain, plot, show, trust, cost, map, derive, completion):
         parser_of_command = commands.add_parser(
@@ -112,7 +100,7 @@ def _parser() -> tuple[argparse.ArgumentParser, Any]:
             help=command.HELP,
             description=command.DESCRIPTION,
             epilog=command.EPILOG,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
+            **raw,
         )
         command.add_arguments(parser_of_command)
         parser_of_command.set_defaults(execute=command.execute)

@@ -10,12 +10,38 @@ from pendcore import AccuracyError, Case, Solution, load, read_case
 from pendcore.cli.usage import UsageError
 
 
-def add_case_and_folder(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments for the case and the folder."""
-    parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help="what to simulate")
-    parser.add_argument(
-        "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
-    )
+def add_case(parser: argparse.ArgumentParser) -> None:
+    """Add the argument for a case."""
+    told = "what to simulate; default: the textbook's case"
+    parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help=told)
+
+
+def add_out(
+    parser: argparse.ArgumentParser,
+    metavar: str = "FOLDER",
+    told: str = "default: out/ and the name of the case",
+) -> None:
+    """Add the option for what is written."""
+    parser.add_argument("-o", "--out", type=Path, metavar=metavar, help=told)
+
+
+def add_number(
+    parser: argparse.ArgumentParser,
+    name: str,
+    metavar: str,
+    told: str,
+    default: float | None = None,
+    kind: type = float,
+) -> None:
+    """Add an option that is a number."""
+    told += "" if default is None else "; default: %(default)s"
+    parser.add_argument(name, type=kind, default=default, metavar=metavar, help=told)
+
+
+def add_flags(parser: argparse.ArgumentParser, **told: str) -> None:
+    """Add options without a value, each with its help."""
+    for name, text in told.items():
+        parser.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
 
 
 def case_of(args: argparse.Namespace) -> Case:
@@ -29,14 +55,9 @@ def folder_of(args: argparse.Namespace) -> Path:
 
 
 def add_case_or_solution(parser: argparse.ArgumentParser) -> None:
-    """Add the argument."""
-    parser.add_argument(
-        "case",
-        nargs="?",
-        type=Path,
-        metavar="RUN.npz|CASE.toml",
-        help="a solution that `pendcore run` wrote, or a case; default: the textbook's case",
-    )
+    """Add the argument for a case or a saved solution."""
+    told = "a solution that `pendcore run` wrote, or a case; default: the textbook's case"
+    parser.add_argument("case", nargs="?", type=Path, metavar="RUN.npz|CASE.toml", help=told)
 
 
 def load_solution(path: Path) -> Solution:
@@ -50,10 +71,7 @@ def load_solution(path: Path) -> Solution:
 def solution_of(args: argparse.Namespace) -> Solution:
     """Return the solution that was named, or that of the case; the most accurate, if none will do.
 
-    Raises
-    ------
-    UsageError
-        If a case asks for an error that cannot be kept, and nothing was computed.
+    Where nothing was computed, as an error that a case asks for cannot be kept, it is a UsageError.
     """
     if args.case is not None and args.case.suffix == ".npz":
         return load_solution(args.case)

@@ -7,11 +7,12 @@ import json
 import sys
 
 from pendcore import Case
-from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
+from pendcore.cli import arguments
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
 from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
+from pendcore.messages import at_least, positive
 from pendcore.options import OPTIONS
 
 HELP = "measure what accuracy costs on a case: errors and times of every method"
@@ -31,46 +32,26 @@ FILES = ("cost.txt", "cost.json", "cost.png")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    add_case_and_folder(parser)
-    parser.add_argument(
-        "--error",
-        type=float,
-        default=1e-6,
-        metavar="E",
-        help="error to recommend a method for: largest position error / total length; "
-        "default: %(default)s",
-    )
-    parser.add_argument(
-        "--methods", metavar="A,B,...", help="default: all that can carry the case", default=None
-    )
-    parser.add_argument(
-        "--time-limit",
-        type=float,
-        default=TIME_LIMIT,
-        metavar="S",
-        help="seconds that it may take; default: %(default)s",
-    )
-    parser.add_argument(
-        "--repeats",
-        type=int,
-        default=REPEATS,
-        metavar="N",
-        help="timed calls of each method, as far as the time allows; default: %(default)s",
-    )
-    parser.add_argument("--json", action="store_true", help="print the numbers as JSON")
+    arguments.add_case(parser)
+    arguments.add_out(parser)
+    told = "error to recommend a method for: largest position error / total length"
+    arguments.add_number(parser, "--error", "E", told, 1e-6)
+    told = "default: all that can carry the case"
+    parser.add_argument("--methods", metavar="A,B,...", help=told)
+    arguments.add_number(parser, "--time-limit", "S", "seconds that it may take", TIME_LIMIT)
+    told = "timed calls of each method, as far as the time allows"
+    arguments.add_number(parser, "--repeats", "N", told, REPEATS, int)
+    arguments.add_flags(parser, json="print the numbers as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if not args.error > 0:
-        raise UsageError(f"--error = {args.error!r}: must be > 0, a share of the total length")
-    if not args.time_limit > 0:
-        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
-    if args.repeats < 1:
-        raise UsageError(f"--repeats = {args.repeats}: must be >= 1")
     with blamed_on_usage():
-        case = case_of(args)
-    folder = folder_of(args)
+        at_least("--repeats", args.repeats, 1)
+        positive("--error", args.error, "of the total length")
+        positive("--time-limit", args.time_limit, "s")
+        case = arguments.case_of(args)
+    folder = arguments.folder_of(args)
     with new_folder(folder):
         cost, whole = _measured(case, args)
         files = FilesToWrite(folder, FILES)
@@ -91,9 +72,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _measured(case: Case, args: argparse.Namespace) -> tuple[AccuracyCost, bool]:
     """Return what was measured, and whether the measurement is complete."""
-    options = {
-        name: value for name, value in case.options.items() if OPTIONS[name].limits_every_method
-    }
+    options = {key: x for key, x in case.options.items() if OPTIONS[key].limits_every_method}
     try:
         return accuracy_cost(
             case.scene, case.t_span, case.q0, case.qd0,

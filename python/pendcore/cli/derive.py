@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pendcore
 from pendcore import Case
-from pendcore.cli.arguments import case_of, folder_of
+from pendcore.cli.arguments import add_case, add_flags, add_out, case_of, folder_of
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder, written
 from pendcore.messages import whole_file
@@ -39,23 +37,11 @@ FORMS = ("text", "latex", "octave", "inline", "python", "cpp", "report")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    parser.add_argument(
-        "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's"
-    )
+    add_case(parser)
     parser.add_argument("--to", choices=FORMS, default="text", help="default: %(default)s")
-    parser.add_argument(
-        "-o",
-        "--out",
-        type=Path,
-        metavar="PATH",
-        help="the file to write, default: print the text; for a report the folder, default: out/ "
-        "and the case's name",
-    )
-    parser.add_argument(
-        "--worksheet",
-        action="store_true",
-        help="write a worksheet beside the report: the same with blanks",
-    )
+    told = "the file to write, default: print the text; for a report the folder, default: out/ and "
+    add_out(parser, "PATH", f"{told}the case's name")
+    add_flags(parser, worksheet="write a worksheet beside the report: the same with blanks")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -64,7 +50,7 @@ def execute(args: argparse.Namespace) -> int:
         raise UsageError("--worksheet: belongs to a report: add --to report")
     with blamed_on_usage():
         case = case_of(args)
-        derivation = _derived(case)
+        derivation = pendcore.derive.Derivation(case.scene)
     if args.to == "report":
         return _report(derivation, case, args)
     with blamed_on_usage("-o"):
@@ -81,24 +67,11 @@ def execute(args: argparse.Namespace) -> int:
     return 0
 
 
-def _derived(case: Case) -> Any:
-    try:
-        return pendcore.derive.Derivation(case.scene)
-    except ModuleNotFoundError as missing:
-        raise UsageError(str(missing)) from None
-
-
 def _text(derivation: Any, args: argparse.Namespace) -> str:
     if args.to == "octave":  # the function is called what its file is called
         return str(derivation.to_octave(args.out.stem if args.out else "RR"))
-    made: dict[str, Callable[[], str]] = {
-        "text": derivation.__str__,
-        "latex": derivation.latex,
-        "inline": derivation.to_octave_inline,
-        "python": derivation.to_python,
-        "cpp": derivation.to_cpp,
-    }
-    return made[args.to]()
+    of = {"inline": "to_octave_inline", "python": "to_python", "cpp": "to_cpp", "latex": "latex"}
+    return str(getattr(derivation, of[args.to])() if args.to in of else derivation)
 
 
 def _report(derivation: Any, case: Case, args: argparse.Namespace) -> int:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 
-from pendcore.cli.arguments import case_of
+from pendcore.cli.arguments import add_case, add_flags, case_of
 from pendcore.cli.usage import blamed_on_usage
 from pendcore.messages import warn
 
@@ -26,10 +25,8 @@ example:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    parser.add_argument(
-        "case", nargs="?", type=Path, metavar="CASE.toml", help="default: the textbook's case"
-    )
-    parser.add_argument("--json", action="store_true", help="print the same as JSON")
+    add_case(parser)
+    add_flags(parser, json="print the same as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:

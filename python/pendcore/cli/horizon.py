@@ -12,21 +12,14 @@ MOST_WORK, PATIENCE = 1_000_000, 10.0
 
 
 class Horizon(NamedTuple):
-    """Until when a run is right.
-
-    Attributes
-    ----------
-    valid_until : float or None
-        s; None where it is not known.
-    sentence : str
-        The same in words, or why it is not known.
-    may_be_later : bool
-        Whether the estimate was stopped before it reached the limit of the error.
-    """
+    """Until when a run is right."""
 
     valid_until: float | None
+    """s; None where it is not known."""
     sentence: str
+    """The same in words, or why it is not known."""
     may_be_later: bool = False
+    """Whether the estimate was stopped before it reached the limit of the error."""
 
 
 def horizon_of(solution: Solution, estimate: ErrorEstimate, limit: float) -> Horizon:

@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from pendcore.cli.arguments import load_solution
+from pendcore.cli.arguments import add_flags, add_number, add_out, load_solution
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import blamed_on_usage, written
 from pendcore.messages import whole_file
@@ -30,26 +30,14 @@ DRAWN = [kind for kind in KINDS if kind != "section"]
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
     parser.add_argument("solution", type=Path, metavar="RUN.npz", help="written by `pendcore run`")
-    parser.add_argument(
-        "-o",
-        "--out",
-        type=Path,
-        metavar="FILE",
-        help="figure to write, its kind from the suffix (png, pdf, svg); default: RUN.png",
-    )
-    parser.add_argument(
-        "--what", choices=DRAWN, default="angles", help="which figure (default: angles)"
-    )
-    parser.add_argument(
-        "--at", type=float, metavar="T", help="s, the time at which free_bodies are shown"
-    )
-    parser.add_argument(
-        "--horizon",
-        type=float,
-        metavar="RAD",
-        help="shade what lies past the time until which the error of an angle is below this",
-    )
-    parser.add_argument("--json", action="store_true", help="print what was written as JSON")
+    told = "figure to write, its kind from the suffix (png, pdf, svg); default: RUN.png"
+    add_out(parser, "FILE", told)
+    told = "which figure (default: angles)"
+    parser.add_argument("--what", choices=DRAWN, default="angles", help=told)
+    add_number(parser, "--at", "T", "s, the time at which free_bodies are shown")
+    told = "shade what lies past the time until which the error of an angle is below this"
+    add_number(parser, "--horizon", "RAD", told)
+    add_flags(parser, json="print what was written as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:

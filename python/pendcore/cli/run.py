@@ -7,6 +7,7 @@ import csv
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from pendcore import AccuracyError, Case, Solution
 from pendcore.case_files import KEYS, with_line
-from pendcore.cli.arguments import add_case_and_folder, case_of, folder_of
+from pendcore.cli import arguments
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.horizon import Horizon, unasked_horizon
 from pendcore.cli.summary import facts, text
@@ -66,21 +67,16 @@ _ROWS_AT_ONCE = 10_000
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    add_case_and_folder(parser)
-    parser.add_argument(
-        "--error",
-        type=float,
-        metavar="E",
-        help="largest position error / total length to keep: method and tolerances are chosen, in "
-        "place of those of the case, and the run is verified",
-    )
+    arguments.add_case(parser)
+    arguments.add_out(parser)
+    told = "largest position error / total length to keep: method and tolerances are chosen, in "
+    told += "place of those of the case, and the run is verified"
+    arguments.add_number(parser, "--error", "E", told)
     parser.add_argument("--method", metavar="NAME", help="method, in place of that of the case")
-    for name, told in (
-        ("rtol", "relative tolerance, in place of that of the case"),
-        ("atol", "absolute tolerance, in place of that of the case"),
-        ("step", "s, a fixed step, in place of tolerances"),
-    ):
-        parser.add_argument(f"--{name}", type=float, metavar="X", help=told)
+    for name, kind in (("rtol", "relative"), ("atol", "absolute")):
+        told = f"{kind} tolerance, in place of that of the case"
+        arguments.add_number(parser, f"--{name}", "X", told)
+    arguments.add_number(parser, "--step", "X", "s, a fixed step, in place of tolerances")
     parser.add_argument(
         "--parameters",
         nargs="+",
@@ -90,24 +86,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="replace numbers of the case: gravity=1.62, link[2].mass=0.9, q0[1]=0.5, ...; "
         "scene.parameters() lists those of a scene",
     )
-    parser.add_argument(
-        "--no-horizon",
-        action="store_true",
-        help="do not estimate until when the run is right: that takes second runs",
+    arguments.add_flags(
+        parser,
+        no_horizon="do not estimate until when the run is right: that takes second runs",
+        csv=f"write the states into {CSV} as well, a row per time",
+        json="print the summary as JSON",
     )
-    parser.add_argument(
-        "--csv", action="store_true", help=f"write the states into {CSV} as well, a row per time"
-    )
-    parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
     with blamed_on_usage():
-        case = case_of(args)
+        case = arguments.case_of(args)
         case = _with_parameters(case, args.parameters) if args.parameters else case
         case = _with_options(case, _options_of(args))
-    folder = folder_of(args)
+    folder = arguments.folder_of(args)
     with new_folder(folder):
         solution, complaint, refusal = _simulated(case, args)
         files = FilesToWrite(folder, (*FILES, CSV) if args.csv else FILES)
@@ -158,9 +151,9 @@ def _with_parameters(case: Case, given: list[str]) -> Case:
 
     A name is that of a parameter of the scene, or of the start: ``q0[1]``, ``qd0[2]``.
     """
-    starts = {"q0": list(case.q0), "qd0": list(case.qd0)}
+    starts: dict[str, Any] = {"q0": list(case.q0), "qd0": list(case.qd0)}
     of_scene: dict[str, float] = {}
-    names: set[str] = set()
+    names, n = set[str](), len(case.q0)
     for one in given:
         name, equals, text = one.partition("=")
         if name in names:
@@ -180,16 +173,11 @@ def _with_parameters(case: Case, given: list[str]) -> Case:
             raise UsageError(f"--parameters {one}: must say of which link, such as {name}[1]")
         if start is None:
             of_scene[name] = value
-        elif not 1 <= int(start[2]) <= len(case.q0):
-            raise UsageError(
-                f"--parameters {one}: the scene has {len(case.q0)} links, counted from 1"
-            )
+        elif not 1 <= int(start[2]) <= n:
+            raise UsageError(f"--parameters {one}: the scene has {n} links, counted from 1")
         else:
             starts[start[1]][int(start[2]) - 1] = value
-    return Case(
-        scene=case.scene.with_parameters(of_scene), **starts, t_span=case.t_span, name=case.name,
-        options=case.options,
-    )  # fmt: skip
+    return replace(case, scene=case.scene.with_parameters(of_scene), **starts)
 
 
 def _with_options(case: Case, given: dict[str, Any]) -> Case:
@@ -206,10 +194,7 @@ def _with_options(case: Case, given: dict[str, Any]) -> Case:
         told = ", ".join(f"{name} = {value}" for name, value in lost.items())
         print(f"left out of the case: {told} (--{' --'.join(given)} in its place)", file=sys.stderr)
     kept = {name: value for name, value in case.options.items() if name not in gone}
-    return Case(
-        scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
-        options=kept | given,
-    )  # fmt: skip
+    return replace(case, options=kept | given)
 
 
 def _write(

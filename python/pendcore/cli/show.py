@@ -6,9 +6,10 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.arguments import add_case_or_solution, solution_of
+from pendcore.cli import arguments
 from pendcore.cli.files_to_write import named_if_lost
 from pendcore.cli.usage import UsageError, blamed_on_usage, written
 from pendcore.messages import whole_file
@@ -30,32 +31,20 @@ ffmpeg writes MP4; where it is missing, a GIF is written instead.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
-    add_case_or_solution(parser)
-    parser.add_argument(
-        "-o",
-        "--out",
-        type=Path,
-        metavar="FILE",
-        help="its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html",
+    arguments.add_case_or_solution(parser)
+    told = "its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html"
+    arguments.add_out(parser, "FILE", told)
+    arguments.add_number(parser, "--speed", "X", "1, the default, is true time, 0.25 slow motion")
+    arguments.add_number(parser, "--fps", "N", "frames a second (default: 30)")
+    arguments.add_number(parser, "--trace", "S", "s of the tip's path that are shown (default: 2)")
+    told = "draw the run pale once the error of an angle may be above this"
+    arguments.add_number(parser, "--horizon", "RAD", told)
+    arguments.add_flags(
+        parser,
+        reactions="show the forces at the joints as arrows",
+        energy="show the energies over time",
+        json="print what was written as JSON",
     )
-    parser.add_argument(
-        "--speed", type=float, metavar="X", help="1, the default, is true time, 0.25 slow motion"
-    )
-    parser.add_argument("--fps", type=float, metavar="N", help="frames a second (default: 30)")
-    parser.add_argument(
-        "--trace", type=float, metavar="S", help="s of the tip's path that are shown (default: 2)"
-    )
-    parser.add_argument(
-        "--reactions", action="store_true", help="show the forces at the joints as arrows"
-    )
-    parser.add_argument("--energy", action="store_true", help="show the energies over time")
-    parser.add_argument(
-        "--horizon",
-        type=float,
-        metavar="RAD",
-        help="draw the run pale once the error of an angle may be above this",
-    )
-    parser.add_argument("--json", action="store_true", help="print what was written as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -63,9 +52,11 @@ def execute(args: argparse.Namespace) -> int:
     args.out = args.out or Path("out", f"{args.case.stem if args.case else 'textbook'}.html")
     if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
         raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")
-    _refuse_what_is_not_shown(args)
+    if args.out.suffix.lower() not in (".mp4", ".gif"):
+        for name in _of_films(args):
+            raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
     with blamed_on_usage():
-        solution = solution_of(args)
+        solution = arguments.solution_of(args)
         args.out.parent.mkdir(parents=True, exist_ok=True)
         where = written(args.out, [args.out])
         with named_if_lost(args.out):
@@ -80,13 +71,11 @@ def execute(args: argparse.Namespace) -> int:
     return 0 if solution.success else 1
 
 
-def _refuse_what_is_not_shown(args: argparse.Namespace) -> None:
-    """Refuse options of films for what is none."""
-    if args.out.suffix.lower() in (".mp4", ".gif"):
-        return
-    for name in ("speed", "fps", "trace", "reactions", "energy", "horizon"):
-        if getattr(args, name) not in (None, False):
-            raise UsageError(f"--{name}: is for films: -o FILE.mp4 or FILE.gif")
+def _of_films(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the options of films that were given."""
+    names = ("speed", "fps", "trace", "reactions", "energy", "horizon")
+    given = {name: getattr(args, name) for name in names}
+    return {name: x for name, x in given.items() if x is not None and x is not False}
 
 
 def _write(solution: Solution, args: argparse.Namespace) -> Path:
@@ -96,11 +85,4 @@ def _write(solution: Solution, args: argparse.Namespace) -> Path:
         with whole_file(args.out) as path:
             save_figure(solution, path, what="strip")
         return Path(args.out)
-    given = {name: getattr(args, name) for name in ("speed", "fps", "trace")}
-    return solution.to_video(
-        args.out,
-        **{name: value for name, value in given.items() if value is not None},
-        reactions=args.reactions,
-        energy=args.energy,
-        horizon=args.horizon,
-    )
+    return solution.to_video(args.out, **_of_films(args))

@@ -54,8 +54,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "not_simulated": [absence._asdict() for absence in case.scene.not_simulated()],
         "version": build.version,
     }
-    plain: dict[str, Any] = as_json(found)
-    return plain
+    return dict(as_json(found))
 
 
 def text(found: dict[str, Any]) -> str:
@@ -70,18 +69,16 @@ def text(found: dict[str, Any]) -> str:
 
 def _effect(effect: Effect) -> dict[str, Any]:
     """Return the kind and the parameters of an effect; a part is a dict of its parameters."""
-    values = {
-        name: x.particulars() if isinstance(x, Part) else x
-        for name, x in effect.particulars().items()
-    }
+    given = effect.particulars().items()
+    values = {name: x.particulars() if isinstance(x, Part) else x for name, x in given}
     return {"kind": effect.kind, **values, "text": repr(effect)}
 
 
 def _events(solution: Solution) -> list[dict[str, Any]]:
     """Return each event asked for, and when it was found."""
+    found = zip(solution.events_asked_for(), solution.events, strict=True)
     return [
-        {"kind": event.kind, "text": repr(event), "times": [one.t for one in found]}
-        for event, found in zip(solution.events_asked_for(), solution.events, strict=True)
+        {"kind": x.kind, "text": repr(x), "times": [one.t for one in of_x]} for x, of_x in found
     ]
 
 
@@ -120,10 +117,9 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "mobility", f"M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
     yield "start", f"t = {start['t']:.6g} s, {_state(start, in_degrees=True)}"
     yield "end", f"t = {run.pop('t_end'):.6g} s"
-    yield (
-        "method",
-        ", ".join([run.pop("method"), *(f"{key} {_brief(x)}" for key, x in run.items())]),
-    )
+    brief = {key: f"({listed(x)})" if isinstance(x, list) else x for key, x in run.items()}
+    told = (f"{key} {x}" for key, x in brief.items() if key != "method")
+    yield "method", ", ".join([run["method"], *told])
     words = [absence["kind"].replace("_", " ") for absence in found["not_simulated"]]
     yield "not simulated", ", ".join(words)
 
@@ -181,10 +177,6 @@ def _times(times: list[float]) -> str:
         return "not found"
     shown = [f"{t:.6g}" for t in times[:_MANY]] + ["..."] * (len(times) > _MANY)
     return f"{len(times)} found, t = {', '.join(shown)} s"
-
-
-def _brief(value: Any) -> str:
-    return f"({listed(value)})" if isinstance(value, list) else str(value)
 
 
 def _rows(pairs: Iterator[tuple[str, str]]) -> Iterator[str]:

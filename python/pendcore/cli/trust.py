@@ -8,11 +8,11 @@ from collections.abc import Callable
 from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.arguments import add_case_or_solution, solution_of
+from pendcore.cli.arguments import add_case_or_solution, add_flags, add_number, solution_of
 from pendcore.cli.horizon import horizon_of
-from pendcore.cli.usage import UsageError, blamed_on_usage
+from pendcore.cli.usage import blamed_on_usage
 from pendcore.explanation.solution_text import LIMIT
-from pendcore.messages import as_json
+from pendcore.messages import as_json, positive
 
 HELP = "say until when a run is right"
 DESCRIPTION = "Say how far to trust a run: a saved run, or the run of a case."
@@ -31,26 +31,18 @@ example:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
-    parser.add_argument(
-        "--limit",
-        type=float,
-        default=LIMIT,
-        metavar="RAD",
-        help=f"error of an angle up to which a run counts as right; default: {LIMIT} rad",
-    )
-    parser.add_argument(
-        "--time-limit", type=float, metavar="S", help="seconds of computing for the second runs"
-    )
-    parser.add_argument("--json", action="store_true", help="print the same as JSON")
+    told = "error of an angle, rad, up to which a run counts as right"
+    add_number(parser, "--limit", "RAD", told, LIMIT)
+    add_number(parser, "--time-limit", "S", "seconds of computing for the second runs")
+    add_flags(parser, json="print the same as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run the sub-command; return its exit status."""
-    if not args.limit > 0:
-        raise UsageError(f"--limit = {args.limit!r}: must be > 0 (rad)")
-    if args.time_limit is not None and not args.time_limit > 0:
-        raise UsageError(f"--time-limit = {args.time_limit!r}: must be > 0 (s)")
     with blamed_on_usage():
+        positive("--limit", args.limit, "rad")
+        if args.time_limit is not None:
+            positive("--time-limit", args.time_limit, "s")
         solution = solution_of(args)
         found = trust(solution, args.limit, args.time_limit)
     if args.json:

@@ -18,13 +18,13 @@ class NotWritten(Exception):
 
 @contextmanager
 def blamed_on_usage(what: str = "") -> Iterator[None]:
-    """Turn errors of files and values in the body of the `with` statement into `UsageError`."""
+    """Turn errors of files, values and missing packages in the body into `UsageError`."""
     try:
         yield
     except OSError as error:
         told = f"{error.filename}: {error.strerror}" if error.filename else str(error)
         raise UsageError(told) from None
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, ModuleNotFoundError) as error:
         raise UsageError(f"{what}: {error}" if what else str(error)) from None
 
 
@@ -57,6 +57,5 @@ def _require_writable(folder: Path) -> None:
     try:
         TemporaryFile(dir=folder).close()
     except OSError as error:
-        raise UsageError(
-            f"{folder}: cannot be written: {error.strerror}: choose another folder"
-        ) from None
+        told = f"{folder}: cannot be written: {error.strerror}: choose another folder"
+        raise UsageError(told) from None

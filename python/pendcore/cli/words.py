@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -14,9 +14,7 @@ CHOSEN_FOR_ERROR = tuple(name for name, one in OPTIONS.items() if one.chosen_for
 """The options of a run that the command line takes too; an error that is asked for chooses all."""
 
 
-def known_words(
-    parser: argparse.ArgumentParser, commands: Any, argv: Sequence[str]
-) -> argparse.Namespace:
+def known_words(parser: ArgumentParser, commands: Any, argv: Sequence[str]) -> Namespace:
     """Return the arguments; for a word that is not known, exit with what may have been meant."""
     first = argv[0] if argv else "-"
     if not first.startswith("-") and first not in commands.choices:
@@ -41,7 +39,7 @@ def of_the_run(name: str, value: str) -> str:
     return f"{name} is an option of the run: write {name} = {value} below [run] in the case"
 
 
-def _remedy(word: str, command: str, parsers: Mapping[str, argparse.ArgumentParser]) -> str:
+def _remedy(word: str, command: str, parsers: Mapping[str, ArgumentParser]) -> str:
     """Return what to write for an option where a command does not take it."""
     name = word.partition("=")[0]
     key = name.lstrip("-").replace("-", "_")
@@ -59,5 +57,5 @@ def _remedy(word: str, command: str, parsers: Mapping[str, argparse.ArgumentPars
     return f"{name} is an option of {', '.join(others)}" if others else did_you_mean(name, own)
 
 
-def _options(parser: argparse.ArgumentParser) -> list[str]:
+def _options(parser: ArgumentParser) -> list[str]:
     return [option for option in parser._option_string_actions if option[:2] == "--"]

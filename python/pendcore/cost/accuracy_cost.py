@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from pendcore.cost.figure import plot
 from pendcore.cost.point import Point, duration, front, seconds_at
-from pendcore.messages import as_json, number, whole_file
+from pendcore.messages import as_json, positive, whole_file
 
 if TYPE_CHECKING:
     from matplotlib.lines import Line2D
@@ -91,7 +91,7 @@ class AccuracyCost:
         ValueError
             If no point does; the message says what was reached.
         """
-        asked = _asked(error)
+        asked = positive("error", error, "of the total length")
         kept = [p for p in self.points if p.error + self.uncertainty <= asked]
         if not kept:
             reached = min((p.error for p in self.points), default=inf) + self.uncertainty
@@ -107,7 +107,7 @@ class AccuracyCost:
 
     def sentence(self, error: float = 1e-6) -> str:
         """Return in words what to take for an error, and what ten times the accuracy costs."""
-        error = _asked(error)
+        error = positive("error", error, "of the total length")
         try:
             best = self.best(error)
         except ValueError as reason:
@@ -155,8 +155,7 @@ class AccuracyCost:
         """Return everything as JSON can hold it: infinite numbers become None."""
         best = [(p.method, p.rtol, p.step) for p in self.pareto()]
         points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
-        plain: dict[str, Any] = as_json(asdict(self) | {"points": points})
-        return plain
+        return dict(as_json(asdict(self) | {"points": points}))
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
         """Return the same as JSON text, and write it to a file if one is named."""
@@ -227,10 +226,3 @@ def _row(point: Point) -> str:
 def _wrapped(name: str, sentence: str) -> list[str]:
     first, *more = wrap(sentence, 82)
     return [f"  {name:11} {first}", *(f"{'':14}{line}" for line in more)]
-
-
-def _asked(error: float) -> float:
-    asked = number("error", error, "")
-    if not asked > 0:
-        raise ValueError(f"error = {asked!r}: must be > 0, a share of the total length")
-    return asked

@@ -34,7 +34,8 @@ def plot(
     axis = one_axes(ax, (7.6, 4.6))
     theme = theme_of(axis)
     drawn = [p for p in points if not p.failure and p.error > 0]
-    factor, unit = _unit(drawn)
+    least = min((p.seconds for p in drawn), default=1.0)
+    factor, unit = next((factor, unit) for below, factor, unit in UNITS if least < below)
     lines = []
     for method in dict.fromkeys(p.method for p in drawn):
         ours = [p for p in drawn if p.method == method]
@@ -53,11 +54,6 @@ def plot(
     title = as_drawn(f"What accuracy costs: {title}")
     legend_above(axis, [*lines, *_others(theme, points, uncertainty, y)], title=title)
     return lines
-
-
-def _unit(points: list[Point]) -> tuple[float, str]:
-    least = min((p.seconds for p in points), default=1.0)
-    return next((factor, unit) for below, factor, unit in UNITS if least < below)
 
 
 def _dress(ax: Axes, points: Sequence[Point], uncertainty: float, y: str, unit: str) -> None:

@@ -14,21 +14,9 @@ from time import monotonic, perf_counter
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import ErrorEstimate, LyapunovExponents, Scene, lyapunov
+from pendcore import ErrorEstimate, LyapunovExponents, Scene, lyapunov, messages
 from pendcore.cost.horizon_work import HorizonPoint, HorizonWork
 from pendcore.cost.runs import Start, has_error_estimate, methods_named
-from pendcore.messages import (
-    Progress,
-    forget_inner_runs,
-    hand_over,
-    numbers,
-    positive,
-    reporting,
-    require_scene,
-    silence,
-    time_limit_of,
-    time_span,
-)
 from pendcore.methods import known_methods
 from pendcore.options import atol_beside
 
@@ -51,7 +39,7 @@ def horizon_work(
     methods: str | Iterable[str] | None = None,
     rtols: npt.ArrayLike = RTOLS,
     time_limit: float = 60.0,
-    progress: Progress = None,
+    progress: messages.Progress = None,
 ) -> HorizonWork:
     """Measure how long runs of a scene are to be trusted, and what that costs.
 
@@ -92,19 +80,19 @@ def horizon_work(
     >>> [f"{point.rtol:.0e}: {point.valid:.0f} s" for point in work.points]
     ['1e-03: 8 s', '1e-09: 18 s']
     """
-    require_scene(scene)
-    start = Start(scene, q0, qd0, *time_span(t_span))
+    messages.require_scene(scene)
+    start = Start(scene, q0, qd0, *messages.time_span(t_span))
     start.check("dopri5")
-    limit = positive("limit", limit, "rad")
+    limit = messages.positive("limit", limit, "rad")
     names = _methods(methods, start)
-    tolerances = numbers("rtols", rtols, "")
+    tolerances = messages.numbers("rtols", rtols, "")
     if not tolerances or not all(0 < rtol < 1 for rtol in tolerances):
         raise ValueError(f"rtols = {rtols!r}: must hold a tolerance, and each be > 0 and < 1")
     choices = [(method, rtol) for method in names for rtol in tolerances]
-    until = monotonic() + time_limit_of(time_limit)
+    until = monotonic() + messages.time_limit_of(time_limit)
     found: list[tuple[ErrorEstimate, HorizonPoint]] = []
     try:
-        with reporting(progress, "measuring") as report:
+        with messages.reporting(progress, "measuring") as report:
             for done, (method, tolerance) in enumerate(choices):
                 if monotonic() > until:
                     break
@@ -116,8 +104,8 @@ def horizon_work(
         except ValueError as refusal:  # dry friction and stops have no exponents
             return replace(work, refusal=str(refusal))
     except BaseException as stopped:
-        forget_inner_runs(stopped)
-        hand_over(stopped, work=_work(start, limit, choices, found))
+        messages.forget_inner_runs(stopped)
+        messages.hand_over(stopped, work=_work(start, limit, choices, found))
         raise
 
 
@@ -177,7 +165,7 @@ def _growth(start: Start, work: HorizonWork) -> LyapunovExponents | None:
     if not longest > work.early:
         return None
     end = start.t_start + np.copysign(longest, start.t_end - start.t_start)
-    with silence():
+    with messages.silence():
         return lyapunov(
             start.scene, (start.t_start, end), start.q0, start.qd0, count=1, transient=work.early,
             rtol=TIGHT, atol=atol_beside(TIGHT), progress=False,

@@ -141,7 +141,8 @@ class Measurement:
                 self._cut(end, self._too_little() if is_late else why)
             else:
                 break
-            found = found.first_times(known)  # if this was the last attempt
+            # If this was the last attempt.
+            found = found._replace(times=found.times[:known], apart=found.apart[:known])
         self.reference = found
         if self.cut:
             self.remarks.append(
@@ -221,10 +222,8 @@ class Measurement:
             failure = too_long if solution.status == "time_limit" else solution.message
         elif error == inf:
             failure = "did not get to the end with finite angles"
-        stats = solution.stats
-        one.point = replace(
-            one.point, error=error, nfev=stats.nfev, accepted=stats.accepted, failure=failure
-        )
+        counts = {name: getattr(solution.stats, name) for name in ("nfev", "accepted")}
+        one.point = replace(one.point, error=error, failure=failure, **counts)
         one.seconds.append(seconds)
 
     def _repeat(self) -> None:
@@ -248,11 +247,8 @@ class Measurement:
     def _call(self, one: Point, time_limit: float | None = None) -> tuple[pc.Solution, float]:
         """Make the call that is timed."""
         start = self.start
-        options = (
-            {"rtol": one.rtol, "atol": one.atol, **self.limits}
-            if one.step is None
-            else {"step": one.step}
-        )
+        tolerances = {"rtol": one.rtol, "atol": one.atol, **self.limits}
+        options = tolerances if one.step is None else {"step": one.step}
         span = (start.t_start, start.t_end)
         begin = perf_counter()
         solution = pc.simulate(

@@ -13,33 +13,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import pendcore as pc
+from pendcore import methods
 from pendcore.cost.runs import Start
 from pendcore.messages import Floats
-from pendcore.methods import (
-    TIGHTEST,
-    TIGHTEST_IMPLICIT,
-    implicit_method,
-    known_methods,
-    most_accurate,
-    pair_of,
-)
 from pendcore.options import atol_beside
 
 # In a stiff scene an implicit method comes first.
-REFEREES_IF_STIFF = (implicit_method(), "dop853", pair_of("dopri5"))
+REFEREES_IF_STIFF = (methods.implicit_method(), "dop853", methods.pair_of("dopri5"))
 TOO_UNCERTAIN = 1e-6
 """The uncertainty beyond which the span is cut to where both methods agree to `KNOWN`."""
 KNOWN = 1e-8
 
 
 class TooFarError(ValueError):
-    """No two methods got beyond the first of the times.
-
-    Attributes
-    ----------
-    reached : float
-        The time that the second farthest run reached, s.
-    """
+    """No two methods got beyond the first of the times; the second best ``reached`` a time, s."""
 
     def __init__(self, message: str, reached: float) -> None:
         super().__init__(message)
@@ -69,10 +56,6 @@ class Reference(NamedTuple):
         error = float(solution.scene.distances(q, r).max())
         return error if error == error else inf
 
-    def first_times(self, count: int) -> Reference:
-        """Return the reference on the first of its times alone."""
-        return self._replace(times=self.times[:count], apart=self.apart[:count])
-
     def texts(self) -> tuple[str, str]:
         """Return how the two runs were made, for people."""
         return _text(self.first), _text(self.second)
@@ -83,18 +66,17 @@ def reference(
 ) -> Reference:
     """Run two methods as accurately as doubles allow, each in its share of the time.
 
-    Raises
-    ------
-    TooFarError
-        If no two methods get beyond the first of the times; it says why.
+    A TooFarError says why no two get beyond the first of the times.
     """
-    times = _grid(start.t_start, start.t_end, points)
+    times = np.linspace(start.t_start, start.t_end, points)
+    times = times[np.append(True, np.diff(times) != 0)]  # a span of a few last bits has fewer
     runs: list[pc.Solution] = []
     until = monotonic() + time_limit
-    for method in REFEREES_IF_STIFF if stiff else most_accurate():
+    for method in REFEREES_IF_STIFF if stiff else methods.most_accurate():
         if not start.is_supported_by(method):
             continue
-        rtol = tightest_rtol(method)
+        is_implicit = methods.implicit_method() in methods_of(method)
+        rtol = methods.TIGHTEST_IMPLICIT if is_implicit else methods.TIGHTEST
         left = max(until - monotonic(), 1e-3) / 2
         how = {"rtol": rtol, "atol": atol_beside(rtol), "compensated": True, "t_eval": times}
         runs.append(start.run(method, **how, time_limit=left, **limits))
@@ -121,14 +103,6 @@ def known_until(found: Reference) -> int:
     return int(np.argmax(~(found.apart <= KNOWN)))
 
 
-def _grid(t_start: float, t_end: float, points: int) -> Floats:
-    """Return evenly spaced times, s: both ends to the last bit, none twice."""
-    times = np.linspace(t_start, t_end, points)
-    times[-1] = t_end
-    distinct: Floats = times[np.append(True, np.diff(times) != 0)]
-    return distinct  # a span of a few last bits has fewer times than points
-
-
 def _compared(runs: list[pc.Solution], times: Floats) -> Reference:
     first, second = runs
     count = len(times)
@@ -142,10 +116,5 @@ def _text(solution: pc.Solution) -> str:
 
 def methods_of(method: str) -> set[str]:
     """Return a method's name and, for a pair, the names of its two methods."""
-    known = known_methods()[method]
+    known = methods.known_methods()[method]
     return {method, known["first"], known["second"]} - {""}
-
-
-def tightest_rtol(method: str) -> float:
-    """Return the rtol below which a run by a method gets no more accurate."""
-    return TIGHTEST_IMPLICIT if implicit_method() in methods_of(method) else TIGHTEST

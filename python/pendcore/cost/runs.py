@@ -35,8 +35,6 @@ class Start(NamedTuple):
 
     def is_supported_by(self, method: str, step: float | None = None) -> bool:
         """Whether a method supports the scene; ``step`` is for those that need a fixed one, s."""
-        if method not in known_methods():
-            return False
         try:
             self.check(method, step)
         except ValueError:

@@ -9,31 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from pendcore import Scene
+from pendcore import Scene, messages
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.measurement import Measurement
 from pendcore.cost.runs import Start, methods_named
-from pendcore.messages import (
-    Progress,
-    finite_array,
-    forget_inner_runs,
-    hand_over,
-    number,
-    reporting,
-    require_scene,
-    silence,
-    text,
-    time_limit_of,
-    time_span,
-    vector,
-    warn,
-    whole_number,
-)
-from pendcore.options import (
-    atol_beside,
-    require_options,
-    with_options,
-)
+from pendcore.options import atol_beside, require_options, with_options
 
 RTOL = tuple(float(f"1e-{k}") for k in range(2, 15))
 """The tolerances that are tried unless others are given."""
@@ -59,7 +39,7 @@ def accuracy_cost(
     repeats: int = REPEATS,
     time_limit: float = TIME_LIMIT,
     name: str = "",
-    progress: Progress = None,
+    progress: messages.Progress = None,
     **limits: Any,
 ) -> AccuracyCost:
     """Measure what accuracy costs on a scene: every method at every tolerance, error and time.
@@ -118,48 +98,41 @@ def accuracy_cost(
     'dop853 at rtol 1e-09'
     """
     require_options(limits, accuracy_cost)
-    require_scene(scene)
+    messages.require_scene(scene)
     n = len(scene.links)
-    span = time_span(t_span)
+    span = messages.time_span(t_span)
     if span[0] == span[1]:
         raise ValueError(f"t_span = {t_span!r}: must be two different times (s)")
-    angles, rates = vector("q0", q0, n, "rad"), vector("qd0", qd0, n, "rad/s")
+    angles, rates = messages.vector("q0", q0, n, "rad"), messages.vector("qd0", qd0, n, "rad/s")
     start = Start(scene, angles, rates, *span)
     tolerances = _positive("rtol", rtol, "", below=1.0)
-    absolute = None if atol is None else number("atol", atol, "")
+    absolute = None if atol is None else messages.number("atol", atol, "")
     measurement = Measurement(
         start=start,
-        name=text("name", name),
+        name=messages.text("name", name),
         methods=None if methods is None else methods_named(methods),
         tolerances=[(r, atol_beside(r) if absolute is None else absolute) for r in tolerances],
         steps=None if step is None else _positive("step", step, "s"),
         limits=limits,
-        points=_at_least(2, "points", points),
-        repeats=_at_least(1, "repeats", repeats),
-        time_limit=time_limit_of(time_limit),
+        points=messages.at_least("points", points, 2),
+        repeats=messages.at_least("repeats", repeats, 1),
+        time_limit=messages.time_limit_of(time_limit),
     )
     for message in scene.run_warnings(angles, span):
-        warn(message)
+        messages.warn(message)
     try:
-        with silence(), reporting(progress, "measuring") as measurement.report:
+        with messages.silence(), messages.reporting(progress, "measuring") as measurement.report:
             measurement.measure()  # its warnings were given above
     except BaseException as stop:
-        forget_inner_runs(stop)
+        messages.forget_inner_runs(stop)
         measurement.remarks.append("it was interrupted: this is what was measured until then")
-        hand_over(stop, accuracy_cost=measurement.result())
+        messages.hand_over(stop, accuracy_cost=measurement.result())
         raise
     return measurement.result()
 
 
-def _at_least(least: int, name: str, value: int) -> int:
-    whole = whole_number(name, value)
-    if whole < least:
-        raise ValueError(f"{name} = {whole}: must be >= {least}")
-    return whole
-
-
 def _positive(name: str, values: npt.ArrayLike, unit: str, below: float = inf) -> list[float]:
-    array = np.atleast_1d(finite_array(name, values, unit))
+    array = np.atleast_1d(messages.finite_array(name, values, unit))
     if array.ndim != 1 or not array.size or not (array > 0).all():
         raise ValueError(f"{name} = {values!r}: must be numbers > 0, (k,)")
     if not (array < below).all():

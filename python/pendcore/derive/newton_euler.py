@@ -201,7 +201,5 @@ class NewtonEuler:
     @cached_property
     def without_reactions(self) -> tuple[Balance, ...]:
         """The moment equation of every link with the reactions put in: (2.10), (2.11)."""
-        return tuple(
-            Balance(link.moment.inertia, expand(link.moment.acting.xreplace(self.solved_forces)))
-            for link in self.links
-        )
+        known, moments = self.solved_forces, (link.moment for link in self.links)
+        return tuple(Balance(x.inertia, expand(x.acting.xreplace(known))) for x in moments)

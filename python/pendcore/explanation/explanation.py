@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from pendcore import Mobility, Scene, effects
 from pendcore.explanation.equilibria import Equilibrium, Mode
-from pendcore.messages import as_json, beside, table
+from pendcore.messages import as_json, beside, in_a_row, table
 
 STEPS_A_PERIOD = 500
 """The number of steps in a period of the fastest oscillation that avoids rejected steps, at the
@@ -123,14 +123,10 @@ class Explanation:
             "effects": [repr(effect) for effect in self.scene.effects],
         }
         own = (one.name for one in fields(self) if one.name != "scene")
-        plain: dict[str, Any] = as_json(told | {name: getattr(self, name) for name in own})
-        return plain
+        return dict(as_json(told | {name: getattr(self, name) for name in own}))
 
     def _repr_html_(self) -> str:
-        costs = [
-            [what, "" if operations is None else str(operations), f"{nanoseconds:.0f}"]
-            for what, operations, nanoseconds in self.costs
-        ]
+        costs = [[x, "" if n is None else str(n), f"{ns:.0f}"] for x, n, ns in self.costs]
         found = []
         for one in self.equilibria:
             shown = [x.angular_frequency for x in one.modes if x.angular_frequency > 0]
@@ -240,10 +236,9 @@ def _absences(told: Explanation) -> Iterator[str]:
 def _of_lanes(methods: tuple[str, ...]) -> str:
     if not methods:
         return "an ensemble runs its members one by one in each thread"
-    *others, last = methods
-    names = f"{', '.join(others)} or {last}" if others else last
     return (
-        f"an ensemble runs several members at once, a lane each, by {names}; one by one with "
+        f"an ensemble runs several members at once, a lane each, by {in_a_row(methods, 'or')}; "
+        "one by one with "
         "events of your own, for the largest exponent, and for the drift of energy with losses"
     )
 

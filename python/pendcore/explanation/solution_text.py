@@ -56,13 +56,8 @@ def _right(solution: Solution) -> str:
 
 
 def _scene(solution: Solution) -> str:
-    scene = solution.scene
-    n = len(scene.links)
-    told = f"{n} link{'s'[: n > 1]}, gravity {scene.gravity:.6g} m/s^2"
-    return f"{told}, {_effects(solution)}" if scene.effects else told
-
-
-def _effects(solution: Solution) -> str:
-    """Return the kinds, and how many of each there are."""
-    count = Counter(effect.kind for effect in solution.scene.effects)
-    return ", ".join(kind if k == 1 else f"{kind} ({k})" for kind, k in count.items())
+    """Return the links, gravity, and the kinds of effects, with how many of each there are."""
+    scene, n = solution.scene, len(solution.scene.links)
+    count = Counter(effect.kind for effect in scene.effects)
+    kinds = [kind if k == 1 else f"{kind} ({k})" for kind, k in count.items()]
+    return ", ".join([f"{n} link{'s'[: n > 1]}, gravity {scene.gravity:.6g} m/s^2", *kinds])

@@ -6,17 +6,17 @@ import json
 import re
 from base64 import b64encode
 from contextlib import suppress
+from dataclasses import asdict
 from functools import cache
 from html import escape
 from importlib.resources import files
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from pendcore import Case, Solution, build, effects, simulate
 from pendcore.explanation.solution_text import LIMIT
-from pendcore.messages import silence, text
+from pendcore.messages import as_json, silence, text
 from pendcore.methods import known_methods
 from pendcore.options import OPTIONS
 from pendcore.plotting import css_variables
@@ -57,15 +57,13 @@ def page_of(solution: Solution, title: str | None = None) -> str:
     has_events = bool(solution.events_asked_for())
     told = why_it_plays_back(solution)
     core = None if told else core_for_browsers()
+    known: dict[str, Any] = {**effects.kinds(), **effects.parts()}
     data = {
         "case": _plain_case(case, solution),
         "hash": "" if has_events else solution.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
-        "kinds": [
-            {**one._asdict(), "parameters": [x._asdict() for x in one.parameters]}
-            for one in _descriptors()
-        ],
+        "kinds": [x.description for x in known.values() if not x.description.is_function],
         "options": _options(),
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
@@ -76,7 +74,7 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "ABOUT": f"Made by pendcore {build.version}.",
         "NOTICE": escape(told),
         "STYLE": css_variables() + _source("style.css"),
-        "DATA": json.dumps(_finite(data), allow_nan=False).replace("<", "\\u003c"),
+        "DATA": json.dumps(as_json(data, in_words=True), allow_nan=False).replace("<", "\\u003c"),
         "WASM": "" if core is None else b64encode(core).decode(),
         "CORE": "" if core is None else _bundle(CORE_MODULES),
         "WORKER": "" if core is None else _bundle(WORKER_MODULES),
@@ -126,10 +124,7 @@ def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:
     return {
         **({"name": solution.name} if solution.name else {}),
         "gravity": case.scene.gravity,
-        "link": [
-            {"mass": one.mass, "length": one.length, "center": one.center, "inertia": one.inertia}
-            for one in case.scene.links
-        ],
+        "link": [asdict(one) for one in case.scene.links],
         "effect": [
             {"kind": one.kind, **_parameters(one)}
             for one in case.scene.effects
@@ -158,12 +153,6 @@ def _method(case: Case, solution: Solution) -> str:
     return "auto" if usual == solution.method and is_adaptive else solution.method
 
 
-def _descriptors() -> list[Any]:
-    """Return what is known of effects and of their parts."""
-    known = [*effects.kinds().values(), *effects.parts().values()]
-    return [one.description for one in known if not one.description.is_function]
-
-
 def _options() -> list[dict[str, Any]]:
     """Return the options of a run that a page takes: their words, or their type."""
     stores = re.findall('"(.*?)"', OPTIONS["store"].type)
@@ -189,10 +178,8 @@ def _defaults() -> dict[str, Any]:
 
 def _parameters(value: Any) -> dict[str, Any]:
     """Return the parameters of an effect, or of a part, that are not what they are if left out."""
-    return {
-        name: _parameters(one) if isinstance(one, effects.Part) else one
-        for name, one in value.particulars().items()
-    }
+    given = value.particulars().items()
+    return {name: _parameters(x) if isinstance(x, effects.Part) else x for name, x in given}
 
 
 def _recording(solution: Solution) -> dict[str, Any]:
@@ -227,16 +214,3 @@ def _rounded(numbers: Any) -> Any:
     if np.ndim(numbers) > 1:
         return [_rounded(row) for row in numbers]
     return [float(f"{x:.7g}") for x in numbers]
-
-
-def _finite(value: Any) -> Any:
-    """Return the same with infinities as words, and null for NaN, because JSON has neither."""
-    if isinstance(value, dict):
-        return {name: _finite(one) for name, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(one) for one in value]
-    if isinstance(value, np.ndarray | np.generic):
-        return _finite(value.tolist())
-    if isinstance(value, float) and not isfinite(value):
-        return None if value != value else "inf" if value > 0 else "-inf"
-    return value

@@ -28,12 +28,7 @@ export default { render };
 class NotebookPage:
     """A page of a run, as a notebook shows it; `pendcore.Solution.page` makes it.
 
-    Attributes
-    ----------
-    text : str
-        The page, as `Solution.to_html` writes it.
-    height : int
-        Pixels.
+    ``text`` is the page, as `Solution.to_html` writes it, and ``height`` its height in pixels.
     """
 
     def __init__(self, text: str, height: int) -> None:

@@ -74,8 +74,7 @@ def _turns(scene: Scene, t: Floats, states: Floats) -> Floats:
     with np.errstate(invalid="ignore", over="ignore"):  # a blow-up
         change = np.abs(np.diff(states[:, : q.shape[1]], axis=0)).max(axis=1)
         by_rate = np.maximum(qd[:-1], qd[1:]).max(axis=1) * h
-    turns: Floats = np.maximum(np.maximum(change, by_rate), scene.fastest_drive() * h)
-    return turns
+    return np.asarray(np.maximum(np.maximum(change, by_rate), scene.fastest_drive() * h))
 
 
 def _refined(nodes: Floats, wanted: Floats, fewest: int) -> Floats:

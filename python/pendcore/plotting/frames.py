@@ -38,8 +38,7 @@ def frame_times(solutions: Sequence[Solution], fps: float, speed: float) -> Floa
             f"most {MOST_FRAMES} frames: give speed={abs(length) / 60:.3g} for one of a minute"
         )
     frames = max(int(count * (1 + 1e-12)), 1) + 1
-    times: Floats = start + np.copysign(faster / rate, length) * np.arange(frames)
-    return times
+    return np.asarray(start + np.copysign(faster / rate, length) * np.arange(frames))
 
 
 def moves_of(solution: Solution, times: Floats) -> Moves:

@@ -26,7 +26,9 @@ def draw_path(asked: Request) -> list[Artist]:
     """Draw the path of the tip, m, and the chain: pale at the start, in its colour at the end."""
     t, q, _, _ = curve_of(asked.solution)
     places = asked.solution.scene.positions(t, q)
-    axis = one_axes(asked.ax, _fitting(places), asked.new_figure)
+    width, height = np.ptp(places.reshape(-1, 2), axis=0)  # m, which are to fit to scale
+    tall = float(np.clip(height / max(width, 1e-300), 0.3, 1.3)) * (_SIZE[0] - 0.8) + 1.1
+    axis = one_axes(asked.ax, (_SIZE[0], tall), asked.new_figure)
     theme, count = theme_of(axis), _count(axis)
     color = theme.run(count) if count else theme.link(q.shape[1] - 1)
     hidden = "_" * bool(count or asked.label)
@@ -78,8 +80,9 @@ def draw_section(asked: Request) -> list[Artist]:
     event = _within("event", asked.event, 0, len(events) - 1)
     found, wanted = events[event], asked.solution.events_asked_for()[event]
     angles = _within_a_turn(found.q)
-    usual = _moving(angles) if asked.link is None else asked.link
-    link = _within("link", usual, 1, angles.shape[1])
+    spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
+    moving = int(np.argmax(spans > 1e-6)) + 1  # the first whose angle is not always the same, or 1
+    link = _within("link", moving if asked.link is None else asked.link, 1, angles.shape[1])
     axis = one_axes(asked.ax, _SIZE, asked.new_figure)
     ours: dict[str, Any] = {"color": theme_of(axis).link(link - 1), "linestyle": "", "marker": "."}
     ours |= {"markersize": 3.0 if len(found) > 50 else 6.0}
@@ -105,19 +108,6 @@ def _within_a_turn(angles: Floats) -> Floats:
 def _count(axis: Axes) -> int:
     """Return how many curves of runs are on the axes already."""
     return sum(line.get_gid() == _GID for line in axis.lines)
-
-
-def _moving(angles: Floats) -> int:
-    """Return the first link whose angle is not the same at every event, or 1."""
-    spans = np.ptp(angles, axis=0) if len(angles) else np.zeros(1)
-    return int(np.argmax(spans > 1e-6)) + 1
-
-
-def _fitting(places: Floats) -> tuple[float, float]:
-    """Return the size of a figure, inches, into which places (..., 2), m, fit to scale."""
-    width, height = np.ptp(places.reshape(-1, 2), axis=0)
-    across, down = _SIZE[0] - 0.8, float(np.clip(height / max(width, 1e-300), 0.3, 1.3))
-    return _SIZE[0], across * down + 1.1
 
 
 def _draw(

@@ -74,16 +74,8 @@ def plot(
         raise TypeError(f"{next(iter(given))}: what = {what!r} has no lines: only arrows and rods")
     if horizon is not None:
         valid_until = solution.valid_until(positive("horizon", horizon, "rad"))
-    return draw(
-        Request(
-            solution=solution,
-            ax=ax,
-            new_figure=new_figure,
-            valid_until=valid_until,
-            properties=given,
-            **own,
-        )
-    )
+    own |= {"ax": ax, "new_figure": new_figure, "properties": given}
+    return draw(Request(solution=solution, valid_until=valid_until, **own))
 
 
 def save_figure(

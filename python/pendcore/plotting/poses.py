@@ -109,11 +109,8 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
     for i, (angle, of_link) in enumerate(zip(q, forces, strict=True)):
         ends = pose[i : i + 2]
         alongs = arrows_of(np.array([one.force for one in of_link]), largest, reach)
-        drawn = [
-            (one, along, _would_lie_on_link(one, along, ends))
-            for one, along in zip(of_link, alongs, strict=True)
-            if along.any()
-        ]
+        pairs = [pair for pair in zip(of_link, alongs, strict=True) if pair[1].any()]
+        drawn = [(one, along, _would_lie_on_link(one, along, ends)) for one, along in pairs]
         free = [one.at - along if arrives else one.at + along for one, along, arrives in drawn]
         across = np.array([*ends, *free])[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])
@@ -136,8 +133,7 @@ def arrows_of(forces: Floats, full: float, reach: float) -> Floats:
     """
     sizes = np.hypot(forces[..., :1], forces[..., 1:])
     lengths = np.clip(_LONGEST * sizes / (full or 1.0), _SHORTEST, _LONGEST) * reach
-    arrows: Floats = forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full)
-    return arrows
+    return np.asarray(forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full))
 
 
 def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:

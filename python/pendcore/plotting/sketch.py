@@ -210,16 +210,14 @@ def _head(
 
 def angle_from_x(on: Sketch, at: Floats, angle: float, text: str, radius: float) -> None:
     """Mark the angle of a link: a dashed line along +x, and an arc unless the angle is small."""
-    reach = np.array([0.3 * on.size, 0.0])
-    on.axes.plot(
-        *np.array([at, at + reach]).T, color=on.theme.angle, lw=0.9, ls=(0, (5, 3)), zorder=2
-    )
+    reach, color = np.array([0.3 * on.size, 0.0]), on.theme.angle
+    on.axes.plot(*np.array([at, at + reach]).T, color=color, lw=0.9, ls=(0, (5, 3)), zorder=2)
     on.line(at, at + reach)
     shown = float(np.angle(np.exp(1j * angle)))
     if abs(shown) < np.radians(8):
-        name(on, at + 0.6 * reach, text, np.array([0.0, -1.0]), color=on.theme.angle)
+        name(on, at + 0.6 * reach, text, np.array([0.0, -1.0]), color=color)
         return
-    turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=on.theme.angle)
+    turning_arrow(on, at, text, radius=radius, span=(0.0, shown), color=color)
 
 
 def weight(on: Sketch, center: Floats, text: str, reach: float) -> None:

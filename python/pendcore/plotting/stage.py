@@ -58,9 +58,8 @@ class Choices:
         if self.horizon is not None:
             positive("horizon", self.horizon, "rad")
         if self.trace is not None and not number("trace", self.trace, "s") >= 0:
-            raise ValueError(
-                f"trace = {float(self.trace)}: must be >= 0 (s); inf shows the whole path"
-            )
+            wanted = "must be >= 0 (s); inf shows the whole path"
+            raise ValueError(f"trace = {float(self.trace)}: {wanted}")
 
 
 def animate(
@@ -84,9 +83,7 @@ def _names_of(runs: Sequence[Solution], given: Sequence[str | None] | None) -> t
         return tuple(one.name if len(runs) > 1 else "" for one in runs)
     if isinstance(given, str) or len(given) != len(runs):
         raise ValueError(f"names = {given!r}: must be {len(runs)}, one for each run")
-    return tuple(
-        text(f"names[{k}]", "" if one is None else str(one)) for k, one in enumerate(given)
-    )
+    return tuple(text(f"names[{k}]", "" if x is None else str(x)) for k, x in enumerate(given))
 
 
 class _Run(NamedTuple):
@@ -115,10 +112,8 @@ class Stage:
         moves = [moves_of(one, self.times) for one in dense]
         limit = choices.horizon
         ends = [None if limit is None else one.valid_until(limit) for one in solutions]
-        asked = [
-            Request(solution=one, horizon=limit, valid_until=end)
-            for one, end in zip(dense, ends, strict=True)
-        ]
+        pairs = zip(dense, ends, strict=True)
+        asked = [Request(solution=x, horizon=limit, valid_until=end) for x, end in pairs]
         forces = np.concatenate([one.reactions.reshape(-1, 2) for one in moves])
         full = float(np.percentile(np.hypot(*forces.T), TYPICAL))
         reach = max(total_length(one.scene) for one in dense)

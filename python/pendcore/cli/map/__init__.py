@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendcore import Case, ensemble, read_case
+from pendcore.cli.arguments import add_flags, add_number, add_out
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cli.map.refinement import Mask, levels_of, refined
@@ -73,29 +74,14 @@ class Pixels:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the sub-command."""
     parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
-    parser.add_argument(
-        "-o", "--out", type=Path, metavar="FOLDER", help="default: out/ and the name of the case"
-    )
-    parser.add_argument("--count", type=int, metavar="N", help="pixels along both axes")
-    parser.add_argument(
-        "--zoom",
-        type=float,
-        nargs=4,
-        metavar=("X0", "X1", "Y0", "Y1"),
-        help="other ends of x and y",
-    )
-    parser.add_argument(
-        "--refine",
-        type=int,
-        default=0,
-        metavar="LEVELS",
-        help="begin with pixels that are 2^LEVELS times as large, and divide those that differ "
-        "from a neighbour; default: compute all",
-    )
-    parser.add_argument(
-        "--no-trust", action="store_true", help="leave out the second runs that confirm pixels"
-    )
-    parser.add_argument("--workers", type=int, metavar="N", help="threads; default: all processors")
+    add_out(parser)
+    add_number(parser, "--count", "N", "pixels along both axes", kind=int)
+    ends, told = ("X0", "X1", "Y0", "Y1"), "other ends of x and y"
+    parser.add_argument("--zoom", type=float, nargs=4, metavar=ends, help=told)
+    told = "begin with pixels that are 2^LEVELS times as large, and divide those that differ from "
+    add_number(parser, "--refine", "LEVELS", f"{told}a neighbour; 0 computes all", 0, int)
+    add_flags(parser, no_trust="leave out the second runs that confirm pixels")
+    add_number(parser, "--workers", "N", "threads; default: all processors", kind=int)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -242,10 +228,8 @@ def _summary(asked: _Asked, pixels: Pixels) -> str:
         f"{table.x.count} x {table.y.count} pixels",
         "runs: " + ", ".join(f"{count} {name}" for name, count in pixels.counts.items()),
     ]
-    if pixels.forbidden:
-        lines.append(
-            f"{pixels.forbidden} were not needed: the energy does not suffice for the event"
-        )
+    if needless := pixels.forbidden:
+        lines.append(f"{needless} were not needed: the energy does not suffice for the event")
     if args.refine:
         share = np.count_nonzero(pixels.computed) / total
         lines.append(f"computed at the finest level: {share:.1%}")

@@ -75,8 +75,7 @@ def _colours(values: Floats) -> Floats:
     scale = np.log if some.min() > 0 else np.asarray
     low, high = scale(some.min()), scale(some.max())
     with np.errstate(invalid="ignore", divide="ignore"):
-        shares: Floats = (scale(values) - low) / max(float(high - low), 1e-300)
-    return shares
+        return np.asarray((scale(values) - low) / max(float(high - low), 1e-300))
 
 
 def _enlarged(pixels: npt.NDArray[Any], factor: int = 2) -> npt.NDArray[Any]:

@@ -39,13 +39,7 @@ WITHOUT_LAW: dict[str, tuple[str, str]] = {
 
 
 def laws_of(effects: Sequence[Any], notation: Notation) -> list[Law]:
-    """Return the laws of effects.
-
-    Raises
-    ------
-    ValueError
-        If an effect has no smooth law; the message says which one, why, and what to do instead.
-    """
+    """Return the laws of effects; a ValueError says which has no smooth one, why, what to do."""
     laws = []
     for number, effect in enumerate(effects, start=1):
         try:

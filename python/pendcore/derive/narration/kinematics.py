@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from sympy import Integer
 
 from pendcore.derive.chain import Vector
-from pendcore.derive.narration.page import Page, Sides, listed, total
+from pendcore.derive.narration.page import Page, Sides, total
 from pendcore.derive.step import Formula
+from pendcore.messages import in_a_row
 
 
 def kinematics(page: Page) -> None:
@@ -16,10 +17,13 @@ def kinematics(page: Page) -> None:
     links = range(1, page.n + 1)
     chain, centers = page.chain, [page.center(i) for i in links]
     joints = [page.joint(i) for i in range(page.n + 1)]
+    radii = [
+        total(page.along(u, page.coordinate(axis, center)) for axis, u in ("xi", "yj"))
+        for center in centers
+    ]
     _mobility(page)
-    origin = (
-        "at $A$" if chain.pivot_is_fixed else "the point about which the pivot $A$ moves on a path"
-    )
+    path = "the point about which the pivot $A$ moves on a path"
+    origin = "at $A$" if chain.pivot_is_fixed else path
     page.step(
         "Positions",
         "The plane of motion is the $xy$ plane, with $x$ to the right and $y$ vertical, positive "
@@ -27,21 +31,16 @@ def kinematics(page: Page) -> None:
         "towards the $y$ axis.",
         *chain.path.items(),
         *_points(page, joints[1:], chain.joints[1:], 0),
-        *((page.vector("r", center), _components(page, center)) for center in centers),
+        *zip((page.vector("r", center) for center in centers), radii, strict=True),
         *_points(page, centers, chain.centers, 0),
     )
-    page.step(
-        "Velocities of the mass centres",
-        "The velocity is the derivative of the position with respect to time.",
-        *_points(page, centers, chain.center_velocities, 1),
-    )
+    text = "The velocity is the derivative of the position with respect to time."
+    found = _points(page, centers, chain.center_velocities, 1)
+    page.step("Velocities of the mass centres", text, *found)
     tip = [chain.tip_acceleration] if page.equations.payload is not None else []
-    page.step(
-        "Accelerations of the mass centres",
-        "The acceleration is the derivative of the velocity with respect to time.",
-        *_points(page, centers, chain.center_accelerations, 2),
-        *_points(page, joints[-1:] * len(tip), tip, 2),
-    )
+    named, moved = [*centers, *joints[-1:] * len(tip)], [*chain.center_accelerations, *tip]
+    text = "The acceleration is the derivative of the velocity with respect to time."
+    page.step("Accelerations of the mass centres", text, *_points(page, named, moved, 2))
     page.step(
         "Angular velocities and accelerations",
         "Every link turns about the $z$ axis, whose unit vector is $\\mathbf{k}$; turning from $x$ "
@@ -68,7 +67,7 @@ def kinematics(page: Page) -> None:
 def _mobility(page: Page) -> None:
     k = page.n - len(page.equations.locked)  # links that a lock joins count as one
     locks = " A lock makes one body of the two that it joins." if page.equations.locked else ""
-    angles = listed(f"$q_{{{i}}}(t)$" for i in range(1, page.n + 1))
+    angles = in_a_row(f"$q_{{{i}}}(t)$" for i in range(1, page.n + 1))
     symbol = page.s.symbol("M", "M")
     page.step(
         "Degrees of freedom",
@@ -86,15 +85,11 @@ def _moments_of_inertia(page: Page) -> None:
     found: list[Sides] = [(name, value) for name, value in given if value != name]
     text = "The moment of inertia of each link about its mass centre is given."
     if found:
-        text = (
-            "The moment of inertia of a link about its mass centre is that of a uniform rod, "
-            "unless another is given."
-        )
+        text = "The moment of inertia of a link about its mass centre is that of a uniform rod, "
+        text += "unless another is given."
     if page.chain.pivot_is_fixed:
-        text += (
-            " Link 1 turns about the fixed point $A$, for which the parallel axis theorem gives "
-            "$I_{A}$."
-        )
+        text += " Link 1 turns about the fixed point $A$, for which the parallel axis theorem "
+        text += "gives $I_{A}$."
         found.append((names[0], names[1] + s.masses[0] * s.centers[0] ** 2))
         if s.inertias[0] != names[1]:
             found.append((names[0], page.equations.links[0].moment.inertia / s.qdd[0]))
@@ -128,10 +123,6 @@ def statements(page: Page) -> list[str]:
     if equations.torques:
         found.append("$\\tau_{j}$ is the sum of the couples of effects at joint $j$.")
     return [*found, *(law.statement for law in equations.laws)]
-
-
-def _components(page: Page, point: Formula) -> Formula:
-    return total(page.along(u, page.coordinate(axis, point)) for axis, u in ("xi", "yj"))
 
 
 def _points(

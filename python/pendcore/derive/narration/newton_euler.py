@@ -67,10 +67,8 @@ def _far_in_words(page: Page, i: int) -> str:
     text = f" ${far}$ is the force of {whose} on link {i} at ${page.joint(i)}$."
     if i == page.n and payload is not None and payload.inertia != 0:
         couple = page.s.latex(expand(payload.inertia * page.s.qdd[i - 1]))
-        text += (
-            f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts back "
-            "on the link."
-        )
+        text += f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts "
+        text += "back on the link."
     return text
 
 
@@ -93,19 +91,15 @@ def _link(page: Page, i: int, link: LinkEquations) -> None:
         for axis, line in zip("xy", link.newton, strict=True)
     ]  # fmt: skip
     if link.about_pivot:
-        text += (
-            " As the link turns about the fixed point $A$, the sum of the moments about $A$ equals "
-            f"the moment of inertia about $A$ times the angular acceleration, and ${pair}$ has no "
-            "moment."
-        )
+        text += " As the link turns about the fixed point $A$, the sum of the moments about $A$ "
+        text += "equals the moment of inertia about $A$ times the angular acceleration, and "
+        text += f"${pair}$ has no moment."
         found.append(_euler(page, i, page.joint(0), "2.1"))
         found += [] if page.equations.laws else [_moments_about_pivot(page, link)]
         found += [(*link.moment, "2.2"), *components]
     else:
-        text += (
-            " Mass times acceleration is the sum of the forces, and moment of inertia times "
-            f"angular acceleration is the sum of the moments about ${center}$."
-        )
+        text += " Mass times acceleration is the sum of the forces, and moment of inertia times "
+        text += f"angular acceleration is the sum of the moments about ${center}$."
         found += components
         found += _written_out(page, link) if own and page.n == 2 else []
         found.append((*link.moment, "2.8" if own else ""))

@@ -112,9 +112,3 @@ class Page:
 def total(terms: Iterable[Formula]) -> Formula:
     """Return a sum; a term that begins with a minus is subtracted."""
     return Formula(" + ".join(terms).replace("+ -", "- "))
-
-
-def listed(words: Iterable[str]) -> str:
-    """Return ``a``, ``a and b``, ``a, b and c``."""
-    *most, last = words
-    return f"{', '.join(most)} and {last}" if most else last

@@ -7,8 +7,9 @@ from typing import Any
 
 from sympy import Dummy, Expr, Integer, Pow, expand
 
-from pendcore.derive.narration.page import Page, Sides, listed
+from pendcore.derive.narration.page import Page, Sides
 from pendcore.derive.notation import ANGLE, RATE
+from pendcore.messages import in_a_row
 
 BY_ELIMINATION = 4
 """The number of unknown accelerations from which determinants are longer than a page."""
@@ -16,11 +17,8 @@ BY_ELIMINATION = 4
 
 def equations_of_motion(page: Page) -> None:
     """Write the reactions, and what is left without them."""
-    page.step(
-        "Joint reactions",
-        "Newton's equations give the joint reactions, from the tip inwards.",
-        *_reactions(page),
-    )
+    text = "Newton's equations give the joint reactions, from the tip inwards."
+    page.step("Joint reactions", text, *_reactions(page))
     if page.n == 2:
         _put_in(page)
     law, locked = page.derivation.law, page.derivation.locking
@@ -35,11 +33,8 @@ def equations_of_motion(page: Page) -> None:
             "a couple acts on the link beyond its joint, and the opposite couple on the link "
             "before it."
         )
-    page.step(
-        "Equations of motion, collected" if page.n == 2 else "Equations of motion",
-        text,
-        *(page.derivation.named.entries | locked).items(),
-    )
+    title = "Equations of motion" + ", collected" * (page.n == 2)
+    page.step(title, text, *(page.derivation.named.entries | locked).items())
 
 
 def _reactions(page: Page) -> Iterator[Sides]:
@@ -126,8 +121,8 @@ def solution(page: Page) -> None:
         conditions = (f"${write(page.chain.joint(j)[2])} = 0$" for j in locked)
         couples = (f"${write(symbol)}$" for symbol in page.equations.holding.values())
         text += (
-            f" The condition of each lock, {listed(conditions)}, is the equation that finds "
-            f"{listed(couples)}: what the lock must add to $f$ so that ${motion.law}$ holds with "
+            f" The condition of each lock, {in_a_row(conditions)}, is the equation that finds "
+            f"{in_a_row(couples)}: what the lock must add to $f$ so that ${motion.law}$ holds with "
             "these accelerations."
         )
     page.step(
@@ -150,12 +145,9 @@ def first_order(page: Page) -> None:
         for name, value in ((x, xd), (xd, qdd)):
             rate = page.s.symbol(f"d[{name}]/dt", rf"\dot{{x}}_{{{str(name)[2:-1]}}}")
             rates.append((rate, value))
-    page.step(
-        "First-order form",
-        "Equations of second order become a system of first order, with two states for each link.",
-        *names,
-        *rates,
-    )
+    text = "Equations of second order become a system of first order, with two states for each "
+    text += "link."
+    page.step("First-order form", text, *names, *rates)
 
 
 def energy(page: Page) -> None:
@@ -163,24 +155,16 @@ def energy(page: Page) -> None:
     energies = zip("TV", page.derivation.energies_by_definitions, strict=True)
     powers = page.derivation.powers_with(page.equations.forces[0])
     names = [page.s.symbol(f"P{i}", f"P_{{{i}}}") for i in range(1, len(powers) + 1)]
-    told = (
-        f"${page.s.latex(name)}$ is that of the {_named(effect)}"
-        for name, effect in zip(names, powers, strict=True)
-    )
+    pairs = zip(names, powers, strict=True)
+    told = (f"${page.s.latex(name)}$ is that of the {_named(effect)}" for name, effect in pairs)
     text = "The motion conserves the energy; no step above has used this."
     if names:
-        text = (
-            "Only the effects change the energy, at the rate of the sum of their powers: "
-            f"{', '.join(told)}."
-        )
+        text = "Only the effects change the energy, at the rate of the sum of their powers: "
+        text += f"{', '.join(told)}."
     rate = page.s.symbol("d(T + V)/dt", r"\frac{\mathrm{d}}{\mathrm{d}t} (T + V)")
-    page.step(
-        "Energy",
-        text,
-        *((page.s.symbol(name, name), value) for name, value in energies),
-        *zip(names, powers.values(), strict=True),
-        (rate, sum(names)),
-    )
+    found = [(page.s.symbol(name, name), value) for name, value in energies]
+    found += zip(names, powers.values(), strict=True)
+    page.step("Energy", text, *found, (rate, sum(names)))
 
 
 def _named(effect: Any) -> str:

@@ -7,6 +7,7 @@ with blanks.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -58,8 +59,8 @@ def _written(
     engine = conversion.latex_engine()
     writers: dict[str, Callable[[Path], object]] = {}
     for name, document in documents.items():
-        writers[f"{name}.md"] = partial(conversion.markdown, document)
-        if conversion.has_pandoc():
+        writers[f"{name}.md"] = partial(Path.write_text, data=document.markdown(), encoding="utf-8")
+        if shutil.which("pandoc"):
             writers[f"{name}.html"] = partial(conversion.page, document)
             writers |= {f"{name}.pdf": partial(conversion.pdf, document, engine)} if engine else {}
     drawings = (one for document in documents.values() for one in document.drawings)

@@ -129,10 +129,8 @@ def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Drawi
         return Drawing("links", words, figure)
     words = "The links as free bodies; the arrows show what counts as positive."
     if page.equations.loads:
-        words += (
-            " The drag $D_{i}$ on rod $i$ is drawn as it is for positive $F_{d,i}$; "
-            "its moment about the joint where the rod begins is $T_{d,i}$."
-        )
+        words += " The drag $D_{i}$ on rod $i$ is drawn as it is for positive $F_{d,i}$; "
+        words += "its moment about the joint where the rod begins is $T_{d,i}$."
     return Drawing("free_bodies", words, figure)
 
 

@@ -55,19 +55,9 @@ PREAMBLE = r"""
 """
 
 
-def has_pandoc() -> bool:
-    """Whether pages can be made."""
-    return shutil.which("pandoc") is not None
-
-
 def latex_engine() -> str | None:
     """Return the LaTeX engine that this machine has."""
     return next((engine for engine in ENGINES if shutil.which(engine)), None)
-
-
-def markdown(document: Document, path: Path) -> None:
-    """Write a document as Markdown."""
-    path.write_text(document.markdown(), encoding="utf-8")
 
 
 def page(document: Document, path: Path) -> None:

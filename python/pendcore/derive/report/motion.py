@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from pendcore.derive.document import Drawing, Paragraph, Table
 from pendcore.derive.report.pictures import lettering
 from pendcore.derive.report.quantities import Scales, number, quantity
 from pendcore.messages import Floats
-from pendcore.plotting import LIGHT, grid, legend_above, new_axes
+from pendcore.plotting import LIGHT, new_axes, theme_of
+from pendcore.plotting.axes import Request
+from pendcore.plotting.over_time import Curves, draw_curves, in_colors
 
 POINTS = 1201
 """The number of times at which curves are drawn."""
@@ -60,12 +63,8 @@ def _at_times_until(end: float, case: Case) -> tuple[Solution, str]:
     times = np.unique(np.linspace(start, end, POINTS))[:: 1 if end >= start else -1]
     options: dict[str, Any] = {**case.options, "store": "dense", "t_eval": tuple(times.tolist())}
     options |= {"ledger": True} if does_work(case) else {}
-    spread = Case(
-        scene=case.scene, q0=case.q0, qd0=case.qd0, t_span=case.t_span, name=case.name,
-        options=options,
-    )  # fmt: skip
     try:
-        return spread.simulate(on_failure="ignore"), ""
+        return replace(case, options=options).simulate(on_failure="ignore"), ""
     except AccuracyError as refused:
         if refused.solution is None:
             raise
@@ -78,9 +77,7 @@ def takes_time(solution: Solution) -> bool:
     return abs(end - start) > VISIBLE * max(abs(start), abs(end))
 
 
-def numerical_solution(
-    derivation: Derivation, solution: Solution, refusal: str = ""
-) -> dict[str, Any]:
+def numerical_solution(derivation: Derivation, solution: Solution, refusal: str) -> dict[str, Any]:
     """Return how the equations were integrated, and with what result."""
     complaints, moves = [], takes_time(solution)
     if not solution.success:
@@ -206,13 +203,14 @@ def reactions(derivation: Derivation, solution: Solution) -> Drawing:
     forces = solution.reactions().copy()
     forces[:, 1:] *= -1  # F_12 is the core's, F_21 the derivation's
     figure, axes = _sheets(derivation.n, 2.4)
-    for i, axis in enumerate(axes):
-        x, y = forces[:, i].T
-        names = [*map(derivation.symbols.latex, derivation.equations.forces[i])]
-        name = names[0].replace("x}", "}")
-        size = rf"|\mathbf{{F}}{name[1:]}|"
-        curves = {names[0]: x, names[1]: y, size: np.hypot(x, y)}
-        _curves(axis, solution.t, curves, f"${name}$ (N)")
+    panels: dict[str, Curves] = {}
+    for pair, (x, y) in zip(derivation.equations.forces, forces.transpose(1, 2, 0), strict=True):
+        along_x, along_y = map(derivation.symbols.latex, pair)
+        name = along_x.replace("x}", "}")
+        size = rf"$|\mathbf{{F}}{name[1:]}|$"
+        parts = {f"${along_x}$": x, f"${along_y}$": y, size: np.hypot(x, y)}
+        panels[f"${name}$ (N)"] = in_colors(parts, theme_of(axes[0]), [size])
+    draw_curves(Request(solution=solution), axes, solution.t, panels)
     words = "The joint reactions over time; $y$ points down, so a force upward is negative."
     return Drawing("reactions", words, figure)
 
@@ -221,14 +219,15 @@ def reactions(derivation: Derivation, solution: Solution) -> Drawing:
 def energies(solution: Solution) -> Drawing:
     """Draw the energies, and what their balance leaves over."""
     energy = solution.energy()
-    curves = {"T": energy.kinetic, "V": energy.potential, "T + V": energy.total}
+    parts = {"$T$": energy.kinetic, "$V$": energy.potential, "$T + V$": energy.total}
     left, less = energy.total - energy.total[0], ""
     if energy.ledger is not None:
         left, less = energy.ledger["residual"], " less all work"
     figure, axes = _sheets(2, 2.4)
-    _curves(axes[0], solution.t, curves, "energy (J)")
-    _curves(axes[1], solution.t, {"": left}, "balance (J)")
-    axes[1].ticklabel_format(axis="y", style="sci", scilimits=(-2, 3), useMathText=True)
+    theme = theme_of(axes[0])
+    curves = {"energy (J)": in_colors(parts, theme, ["$T + V$"])}
+    curves["balance (J)"] = {"balance": (left, theme.ink)}
+    draw_curves(Request(solution=solution), axes, solution.t, curves)
     words = (
         "Above: kinetic, potential and total energy over time. Below: the change of $T + V$ "
         f"since the start{less}, which should be zero."
@@ -242,18 +241,6 @@ def _sheets(rows: int, height: float = 2.1) -> tuple[Figure, list[Axes]]:
     axes[-1].set_xlabel("t (s)")
     figure: Any = axes[0].figure
     return figure, axes
-
-
-def _curves(axis: Axes, t: Floats, curves: dict[str, Floats], label: str) -> None:
-    """Draw curves over time, the last of them in ink as it is made of the others."""
-    colors = (*LIGHT.parts[: len(curves) - 1], LIGHT.ink)
-    for (name, curve), color in zip(curves.items(), colors, strict=True):
-        axis.plot(t, curve, color=color, label=f"${name}$")
-    axis.set_ylabel(label)
-    if len(curves) > 1:
-        legend_above(axis)
-    grid(axis)
-    axis.margins(x=0)
 
 
 def whole_ticks(angles: Floats) -> tuple[float, float, float]:
