@@ -90,9 +90,14 @@ PENDCORE_INLINE void solve_system(const CollocationStep& step) {
   }
   for (int k = size - 1; k >= 0; --k) {
     double* const solution = step.right(k);
-    for (int j = k + 1; j < size; ++j) add_row(-at(k)[j], step.right(j), solution, step.width);
     const double inverse = 1.0 / at(k)[k];
-    for (int j = 0; j < step.width; ++j) solution[j] *= inverse;
+    for (int first = 0; first < step.width; first += 4) {
+      Pack<4> x = load<Pack<4>>(solution + first);  // not in memory: each sum waits for the last
+      for (int j = k + 1; j < size; ++j) {
+        x = fma(-at(k)[j], load<Pack<4>>(step.right(j) + first), x);
+      }
+      store(solution + first, inverse * x);
+    }
   }
 }
 
@@ -136,11 +141,16 @@ PENDCORE_INLINE void end_step(const CollocationStep* step) {
   for (int r = 0; r < step->n; ++r) {
     double* const angle = step->now + static_cast<std::ptrdiff_t>(r) * step->width;
     double* const rate = step->now + static_cast<std::ptrdiff_t>(step->n + r) * step->width;
-    add_row(step->h, rate, angle, step->width);
-    for (int i = 0; i < points.s; ++i) {
-      const double* const x = step->right(i * step->n + r);
-      add_row(step->h * step->h * points.to_end.twice[i], x, angle, step->width);
-      add_row(step->h * points.to_end.once[i], x, rate, step->width);
+    for (int first = 0; first < step->width; first += 4) {
+      Pack<4> of_rate = load<Pack<4>>(rate + first);
+      Pack<4> of_angle = fma(step->h, of_rate, load<Pack<4>>(angle + first));
+      for (int i = 0; i < points.s; ++i) {
+        const Pack<4> x = load<Pack<4>>(step->right(i * step->n + r) + first);
+        of_angle = fma(step->h * step->h * points.to_end.twice[i], x, of_angle);
+        of_rate = fma(step->h * points.to_end.once[i], x, of_rate);
+      }
+      store(angle + first, of_angle);
+      store(rate + first, of_rate);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "analysis/collocation_kernels.hpp"
 #include "analysis/saltation.hpp"
+#include "arithmetic/epsilon.hpp"
 #include "arithmetic/instruction_set.hpp"
 #include "integrate/horner.hpp"
 #include "text/message.hpp"
@@ -15,6 +16,7 @@ namespace pendcore {
 namespace {
 
 constexpr int most_halvings_of_step = 44;
+constexpr int most_cuts_of_step = 1000;
 /// The error that a step may add, as a share: a hundredth of what the run may, between these.
 constexpr double least_tolerance = 1e-14;
 constexpr double most_tolerance = 1e-10;
@@ -53,6 +55,8 @@ struct Sensitivities::Variation {
   int points_at_once = 8;
   bool has_points_to_spare = false;
   std::vector<double> thetas{}, states{}, decay{};
+  Vector floor{};       ///< what rounding alone makes of d qdd/d p, (k)
+  int parts_left = 0;  ///< into which the step may still be cut
   Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
   bool has_started = false;
@@ -86,6 +90,8 @@ bool Sensitivities::Variation::has_converged(double h) {
   constexpr double fewer = 1e-3;  // a point less leaves larger last coefficients
   has_points_to_spare = true;
   const int width = padded_names();
+  floor.setZero(now.cols());
+  for (const auto& one : equations.parameters()) floor[one.column] = equations.size_of(one);
   for (int k = 0; k < now.cols(); ++k) {
     if (!now.col(k).allFinite()) continue;
     const double largest = decay[k], last = decay[width + k], middle = decay[2 * width + k];
@@ -93,8 +99,10 @@ bool Sensitivities::Variation::has_converged(double h) {
     const double size = now.col(k).cwiseAbs().maxCoeff() + std::abs(h) * largest;
     const bool falls = last * largest <= 10.0 * middle * middle;
     const double allowed = (falls ? 0.3 * std::sqrt(tolerance) : tolerance) * size;
-    if (std::abs(h) * last > allowed) return false;
-    has_points_to_spare &= falls && std::abs(h) * last <= fewer * allowed;
+    if (std::abs(h) * (last - 16.0 * epsilon * floor[k]) > allowed) return false;
+    // Far below what is allowed, rounding is all that is left, and does not fall.
+    const double spare = fewer * 0.3 * std::sqrt(tolerance) * size;
+    has_points_to_spare &= std::abs(h) * (last - 16.0 * epsilon * floor[k]) <= spare;
   }
   return true;
 }
@@ -150,7 +158,7 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
       return advance(step, from, to, halvings);
     }
     const double middle = 0.5 * (from + to);
-    if (halvings == most_halvings_of_step || middle == from || middle == to) {
+    if (halvings == most_halvings_of_step || --parts_left < 0 || middle == from || middle == to) {
       refuse_from(t_start + from * step.h,
                   "the motion has a corner there, or grows beyond numbers");
       return;
@@ -180,6 +188,7 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
 
 void Sensitivities::Variation::take(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
+  parts_left = most_cuts_of_step;
   // A time that is kept is the end of a part: there, the order is highest.
   double from = 0.0;
   for (; std::isfinite(next_share(step)); ++next_time) {

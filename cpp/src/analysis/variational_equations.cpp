@@ -63,10 +63,14 @@ void require_parameter(const Scene& scene, const std::string& name) {
   }
 }
 
+double value_of(const Scene& scene, const std::string& name) {
+  const std::vector<NamedNumber> all = parameters(scene);
+  return std::ranges::find(all, name, &NamedNumber::name)->value;
+}
+
 /// (1 / 2h) (ahead - behind), which is exact up to rounding: supports are linear in parameters.
 std::vector<JointSupport> slopes_of(const Scene& scene, const std::string& name) {
-  const std::vector<NamedNumber> all = parameters(scene);
-  const double value = std::ranges::find(all, name, &NamedNumber::name)->value;
+  const double value = value_of(scene, name);
   const double h = value == 0.0 ? 1.0 : std::ldexp(1.0, std::ilogb(value) - 8);
   const ParameterChoice choice(scene, {name});
   const auto at = [&](double x) {
@@ -106,6 +110,7 @@ VariationalEquations::VariationalEquations(const Scene& scene,
     names_of_parameters_.push_back(name);
     parameters_.push_back({.column = static_cast<Eigen::Index>(k),
                            .name = name,
+                           .value = value_of(scene_, name),
                            .supports = slopes_of(scene_, name)});
   }
 }
@@ -156,7 +161,7 @@ void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q
   qdd_.resize(n_);
   accelerations_in_force(equations_, t, y, qd, qdd_.data());
   forces_->set_mass_matrix(y);
-  forces_->set_up();
+  forces_->factor_mass();
   by_parameters_.compute(mechanisms_, t, View(y, n_), View(qd, n_), qdd_, *forces_, by_parameters);
 }
 

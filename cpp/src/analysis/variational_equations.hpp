@@ -9,6 +9,7 @@
 /// at the time.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ class VariationalEquations {
   struct Parameter {
     Eigen::Index column;  ///< of its change
     std::string name;
+    double value;
     std::vector<JointSupport> supports;  ///< the slopes of friction, angles and restitution
   };
 
@@ -60,6 +62,10 @@ class VariationalEquations {
   void at(double t, const double* y, Eigen::Ref<Matrix> by_q, Eigen::Ref<Matrix> by_qd,
           Eigen::Ref<Matrix> by_parameters);
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
+  /// How large d qdd/d p may be by rounding alone, in units of epsilon, at the last point.
+  double size_of(const Parameter& one) const {
+    return qdd_.cwiseAbs().maxCoeff() / (one.value == 0.0 ? 1.0 : std::abs(one.value));
+  }
 
  private:
   void put_along(double t);

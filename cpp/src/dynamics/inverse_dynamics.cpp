@@ -298,23 +298,21 @@ template class InverseDynamics<AlongParameters>;
 
 void ChangesOfAccelerations::compute(const std::vector<Mechanism<AlongParameters>>& mechanisms,
                                      double t, const Numbers& q, const Numbers& qd,
-                                     const Numbers& qdd, const JointForces& forces,
+                                     const Numbers& qdd, JointForces& forces,
                                      Eigen::Ref<Matrix> changes) {
-  const auto m = static_cast<Eigen::Index>(forces.joints.size());
-  responses_.resize(q.size(), m);
-  for (Eigen::Index r = 0; r < m; ++r) responses_.col(r) = -forces.response(Vector::Unit(m, r));
-  changes.setZero();
+  const std::size_t m = forces.joints.size();
+  torques_.resize(m);
+  change_.resize(q.size());
   for (std::size_t p = 0; p < mechanisms.size(); ++p) {
     motion_.compute(mechanisms[p], t, q, qd, qdd);
-    const auto first = static_cast<Eigen::Index>(p * parameters_at_once);
-    const auto last =
-        std::min(first + static_cast<Eigen::Index>(parameters_at_once), changes.cols());
-    for (Eigen::Index k = first; k < last; ++k) {
-      for (Eigen::Index r = 0; r < m; ++r) {
-        const double slope =
-            lane(motion_.torques()[forces.joints[r]].slope, static_cast<int>(k - first));
-        changes.col(k) += slope * responses_.col(r);
+    for (std::size_t k = 0; k < parameters_at_once; ++k) {
+      const auto column = static_cast<Eigen::Index>(p * parameters_at_once + k);
+      if (column >= changes.cols()) break;
+      for (std::size_t r = 0; r < m; ++r) {
+        torques_[r] = -lane(motion_.torques()[forces.joints[r]].slope, static_cast<int>(k));
       }
+      forces.respond(torques_.data(), change_.data());
+      changes.col(column) = change_;
     }
   }
 }

@@ -123,14 +123,15 @@ class InverseDynamics {
 class ChangesOfAccelerations {
  public:
   /// Writes -M^-1 J^T d tau/d p into the first columns of `changes`, (n, parameters), where
-  /// `forces`, with the mass matrix of q, say how the free joints respond.
+  /// `forces`, with the factors of the mass matrix of q, say how the free joints respond.
   void compute(const std::vector<Mechanism<AlongParameters>>& mechanisms, double t,
-               const Numbers& q, const Numbers& qd, const Numbers& qdd, const JointForces& forces,
+               const Numbers& q, const Numbers& qd, const Numbers& qdd, JointForces& forces,
                Eigen::Ref<Matrix> changes);
 
  private:
   InverseDynamics<AlongParameters> motion_;
-  Matrix responses_;  ///< -M^-1 J^T, (n, joints)
+  std::vector<double> torques_;
+  Vector change_;
 };
 
 }  // namespace pendcore

@@ -35,8 +35,7 @@ void JointForces::set_mass_matrix(const double* q) {
   }
 }
 
-void JointForces::set_up() {
-  const int m = static_cast<int>(joints.size());
+void JointForces::factor_mass() {
   factor_.setZero(bodies_, bodies_);
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t k = 0; k < links.size(); ++k) {
@@ -44,6 +43,25 @@ void JointForces::set_up() {
     }
   }
   factor_symmetric(factor_);
+}
+
+void JointForces::respond(const double* lambda, double* change) {
+  bodies_change_.setZero(bodies_);
+  for (std::size_t r = 0; r < joints.size(); ++r) {
+    bodies_change_(body_[joints[r]]) += lambda[r];
+    const int before = body_before(joints[r]);
+    if (before >= 0) bodies_change_(before) -= lambda[r];
+  }
+  solve_lower(factor_, bodies_change_);
+  solve_upper(factor_, bodies_change_);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    change[i] = body_[i] >= 0 ? bodies_change_(body_[i]) : 0.0;
+  }
+}
+
+void JointForces::set_up() {
+  const int m = static_cast<int>(joints.size());
+  factor_mass();
   problem.resize(m);
   response_.setZero(m, bodies_);
   for (int r = 0; r < m; ++r) {

@@ -28,6 +28,10 @@ struct JointForces {
 
   /// M_ij = A_ij cos(q_i - q_j), and the rotors (inertia.hpp). Cost: O(n^2).
   void set_mass_matrix(const double* q);
+  /// Factors M, for respond() alone.
+  void factor_mass();
+  /// M^-1 J^T lambda, (n), of torques in `joints`; no memory is taken.
+  void respond(const double* lambda, double* change);
   /// Computes W for `joints`, of which none is rigid, from M. The caller fills in a and the bounds
   /// of the problem.
   void set_up();
@@ -47,6 +51,7 @@ struct JointForces {
   std::vector<int> body_;  ///< of each link, from 0; -1 for the ground
   Matrix factor_;          ///< M = L D L^T of the bodies
   Matrix response_;        ///< L^-1 J^T, a row for each joint
+  Vector bodies_change_;
 };
 
 }  // namespace pendcore
