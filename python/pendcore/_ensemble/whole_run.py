@@ -49,7 +49,7 @@ def execution(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> 
 def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble:
     """Run members; arguments are checked before the first of them."""
     require_on_failure(how.on_failure)
-    request.check_reducers()
+    request.check_reducers(members.scene)
     workers = _at_least_1("workers", how.workers, "threads")
     chunk = _at_least_1("chunk", how.chunk, "members")
     limit = time_limit_of(how.time_limit)
