@@ -43,7 +43,6 @@ def test_they_are_those_of_simulate(name, workers):
     q0 = starts(6, len(scene.links), 5, 0.5)
     how = {"t_span": (0, 3), "q0": q0, "vary": vary, "workers": workers}
     found = pc.ensemble(scene, keep=R.Sensitivities(names), **how)
-    assert found["sensitivities"].shape == (6, 2 * len(scene.links), len(names))
     assert found["sensitivities"].any(axis=(0, 1)).all()
     assert_those_of_simulate(found, "sensitivities", names)
     assert np.array_equal(found.member(2).sensitivities[-1], found["sensitivities"][2])
@@ -94,7 +93,8 @@ REFUSED = {
 @pytest.mark.parametrize("by", ["memory", "store", "executor"])
 def test_a_wrong_name_is_refused_before_anything_runs(names, words, by, tmp_path):
     with ThreadPoolExecutor(1) as pool:
-        how = {"store": {"store": tmp_path / "a.zarr"}, "executor": {"executor": pool}}.get(by, {})
+        given = {"store": tmp_path / "a.zarr", "executor": pool}
+        how = {by: given[by], "chunk": 1} if by in given else {}
         with pytest.raises((TypeError, ValueError), match=words) as refused:
             pc.ensemble(BOOK, (0, 1), 0.5, keep=R.Sensitivities(names), **how)
     assert not (tmp_path / "a.zarr").exists()

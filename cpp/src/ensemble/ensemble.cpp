@@ -62,7 +62,7 @@ class RunReducers final : public StepWatch {
     if (!results.extremes.empty()) extremes_.emplace(scene.links.size());
     if (!results.energy_drift.empty()) drift_.emplace(scene);
     if (!results.sensitivities.empty()) {
-      check(scene);  // derivatives by a number that is not finite would be sought in vain
+      check(scene);  // differences by a number that is not finite have no step
       sensitivities_.emplace(scene, results.sensitivity_names);
     }
   }
