@@ -165,11 +165,12 @@ lowest: $(DONE)/venv  ## the lowest versions that pyproject.toml names: installe
 require_one_of = @$(if $(filter-out 1,$(words $($(2))))$(filter-out $(3),$($(2))),$(error make $(1) $(2)=$($(2)): $(2) is one of $(3)))true
 
 # The programs that write tables and figures of pages, and what they need; most need what tests do.
-PAGES := long_runs horizon flip_map asked_errors default_method book_speed film jacobians saddle_transport
+PAGES := long_runs horizon flip_map asked_errors default_method book_speed film jacobians saddle_transport sensitivities
 NEEDED_BY_book_speed := bench
 NEEDED_BY_film := build
 NEEDED_BY_jacobians := bench
-write: known-page $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(PAGE)),test)-requirements  ## a page's figures anew: PAGE=long_runs|horizon|flip_map|asked_errors|default_method|book_speed|film|jacobians|saddle_transport
+NEEDED_BY_sensitivities := bench
+write: known-page $(DONE)/installed $(DONE)/$(or $(NEEDED_BY_$(PAGE)),test)-requirements  ## a page's figures anew: PAGE=long_runs|horizon|flip_map|asked_errors|default_method|book_speed|film|jacobians|saddle_transport|sensitivities
 	$(if $(filter book_speed,$(PAGE)),@sh setup/debian_packages.sh octave)
 	$(if $(filter asked_errors,$(PAGE)),python docs/generators/series_work.py)
 	MPLBACKEND=Agg python docs/generators/$(PAGE).py

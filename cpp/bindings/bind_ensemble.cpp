@@ -68,10 +68,11 @@ py::tuple ensemble(const Scene& scene, const std::vector<py::ssize_t>& shape,
                    const std::vector<std::string>& names,
                    const std::vector<py::array_t<double>>& values, py::handle t0, py::handle t_end,
                    const py::dict& given, int workers, double time_limit, py::handle progress,
+                   const std::vector<std::string>& sensitivity_names,
                    py::array_t<std::uint8_t, py::array::c_style> status,
                    py::array_t<double, py::array::c_style> t,
                    py::array_t<double, py::array::c_style> states, Kept first_found, Kept extremes,
-                   Kept energy_drift, Kept largest_exponent) {
+                   Kept energy_drift, Kept largest_exponent, Kept sensitivities) {
   const std::size_t n = scene.links.size();
   PythonMonitor monitor(progress);
   const Options options = options_of(given, n);
@@ -96,7 +97,9 @@ py::tuple ensemble(const Scene& scene, const std::vector<py::ssize_t>& shape,
                               .first_found = all_of(first_found),
                               .extremes = all_of(extremes),
                               .energy_drift = all_of(energy_drift),
-                              .largest_exponent = all_of(largest_exponent)};
+                              .largest_exponent = all_of(largest_exponent),
+                              .sensitivities = all_of(sensitivities),
+                              .sensitivity_names = sensitivity_names};
   EnsembleEnding ending;
   {
     const py::gil_scoped_release without_lock;
@@ -122,8 +125,9 @@ void bind_ensemble(py::module_& module) {
   module.def("ensemble", &ensemble, py::arg("scene"), py::arg("shape"), py::arg("q0"),
              py::arg("qd0"), py::arg("names"), py::arg("values"), py::arg("t0"), py::arg("t_end"),
              py::arg("options"), py::arg("workers"), py::arg("time_limit"), py::arg("progress"),
-             py::arg("status"), py::arg("t"), py::arg("states"), py::arg("first_found"),
-             py::arg("extremes"), py::arg("energy_drift"), py::arg("largest_exponent"));
+             py::arg("sensitivity_names"), py::arg("status"), py::arg("t"), py::arg("states"),
+             py::arg("first_found"), py::arg("extremes"), py::arg("energy_drift"),
+             py::arg("largest_exponent"), py::arg("sensitivities"));
   module.def(
       "methods_with_lanes",
       [](const Scene& scene) { return py::tuple(py::cast(methods_with_lanes(scene))); },

@@ -134,6 +134,7 @@ def ensemble(
     workers: int,
     time_limit: float,
     progress: Callable[[float], object] | None,
+    sensitivity_names: Sequence[str],
     status: npt.NDArray[np.uint8],
     t: _Floats,
     states: _Floats,
@@ -141,6 +142,7 @@ def ensemble(
     extremes: _Floats | None,
     energy_drift: _Floats | None,
     largest_exponent: _Floats | None,
+    sensitivities: _Floats | None,
 ) -> tuple[str, dict[str, Any], BaseException | None]: ...
 def methods_with_lanes(scene: Scene) -> tuple[str, ...]: ...
 def parameters(scene: Scene) -> list[tuple[str, str, float]]: ...

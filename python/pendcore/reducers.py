@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats
+from pendcore._messages.arguments import Floats, listed_names
 from pendcore.events import Event
 
 
@@ -27,6 +28,8 @@ class Reducer:
     usual_name: ClassVar[str]
     """Its name, if it is given alone."""
     unit: ClassVar[str]
+    axes: ClassVar[tuple[str, ...]] = ()
+    """The names of its axes beyond those of the members."""
     is_log_if_wide: ClassVar[bool] = False
     """Whether figures show values of several orders of magnitude on a logarithmic scale."""
     needs_one_tolerance: ClassVar[bool] = False
@@ -34,8 +37,7 @@ class Reducer:
     is_told_by_states: ClassVar[bool] = False
     """Whether the angles tell which members are resolved, as no two runs have the same value."""
 
-    @staticmethod
-    def labels(n: int) -> dict[str, list[str]]:
+    def labels(self, n: int) -> dict[str, list[str]]:
         """Return its axes beyond those of the members, with the labels along each."""
         return {}
 
@@ -102,13 +104,11 @@ class Extremes(Reducer):
 
     usual_name: ClassVar[str] = "extremes"
     unit: ClassVar[str] = "rad, rad/s"
+    axes: ClassVar[tuple[str, ...]] = ("extreme", "component")
 
-    @staticmethod
-    def labels(n: int) -> dict[str, list[str]]:
+    def labels(self, n: int) -> dict[str, list[str]]:
         """Return the axes and their labels."""
-        links = range(1, n + 1)
-        components = [f"q_{i}" for i in links] + [f"qd_{i}" for i in links]
-        return {"extreme": ["least", "greatest"], "component": components}
+        return {"extreme": ["least", "greatest"], "component": _components(n)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,9 +161,75 @@ class LargestExponent(Reducer):
         return 0.1 * float(np.nanmax(np.abs(one), initial=0.0))
 
 
-REDUCERS: tuple[type[Reducer], ...] = (FirstEvent, Extremes, EnergyDrift, LargestExponent)
+@dataclass(frozen=True, slots=True)
+class Sensitivities(Reducer):
+    """The derivatives of a run's end by its start and by parameters, d(q, qd)/d(name): (2n, k).
+
+    They have the bits of ``simulate(sensitivities=names)``, at each member's own values. Members
+    run one by one in each thread, not in lanes. NaN stands where there is no derivative: in members
+    that fail or are not run, and where the motion has none after some time, of which
+    `Ensemble.member` warns. ``print(found)`` counts the members that have all.
+
+    Parameters
+    ----------
+    names : list of str, (k,)
+        ``"q0[1]"``, ``"qd0[2]"``, or any of `Scene.parameters`, whether it varies or not.
+
+    Examples
+    --------
+    >>> names = ["q0[1]", "link[2].mass"]
+    >>> found = pc.ensemble(
+    ...     pc.Scene.textbook(), q0=[[0.5, 1.0], [1.5, 1.5]], t_span=(0, 2),
+    ...     keep=pc.reducers.Sensitivities(names),
+    ... )
+    >>> found["sensitivities"].shape
+    (2, 4, 2)
+    >>> found["sensitivities"][:, 1, 1].round(3)  # of q_2 by the mass of link 2, rad/kg
+    array([-0.543, -0.014])
+    """
+
+    names: Sequence[str]
+    usual_name: ClassVar[str] = "sensitivities"
+    unit: ClassVar[str] = "rad, rad/s per unit of each name"
+    axes: ClassVar[tuple[str, ...]] = ("component", "by")
+
+    def __post_init__(self) -> None:
+        names = listed_names("names", self.names, "q0[1]")
+        if not names:
+            raise ValueError('names = []: must have one or more, such as ["q0[1]"]')
+        object.__setattr__(self, "names", names)
+
+    def labels(self, n: int) -> dict[str, list[str]]:
+        """Return the axes and their labels."""
+        return {"component": _components(n), "by": [*self.names]}
+
+    @staticmethod
+    def largest_difference(one: Floats, two: Floats) -> Floats:
+        """Return 1 % of the largest derivative of each member by the same name."""
+        largest: Floats = np.maximum(np.abs(one), np.abs(two)).max(axis=-2, keepdims=True)
+        return 0.01 * largest
+
+
+def _components(n: int) -> list[str]:
+    return [f"{name}_{i}" for name in ("q", "qd") for i in range(1, n + 1)]
+
+
+REDUCERS: tuple[type[Reducer], ...] = (
+    FirstEvent,
+    Extremes,
+    EnergyDrift,
+    LargestExponent,
+    Sensitivities,
+)
 """Those that the core computes, in the order of its arguments."""
 
 
-__all__ = ["EnergyDrift", "Extremes", "FirstEvent", "LargestExponent", "Reducer"]
+__all__ = [
+    "EnergyDrift",
+    "Extremes",
+    "FirstEvent",
+    "LargestExponent",
+    "Reducer",
+    "Sensitivities",
+]
 __dir__ = __all__.copy

@@ -227,6 +227,14 @@ CHANGED += [  # no name leads out of a store
     )
     for name in ("../q", "/q", "a/../../q", "C:q", "\\q")
 ]
+CHANGED += [  # names of derivatives
+    ("", {"attributes/keep": {"a": ["Sensitivities", names]}}, told)
+    for names, told in [
+        (["gravty"], 'keep: parameter "gravty": the scene has none of that name'),
+        ("gravity", "must be reducers and events"),
+        ([], "must be reducers and events"),
+    ]
+]
 CHANGED += [  # more blocks than a folder holds
     (
         "", {"attributes/shape": shape, "attributes/block_shape": [1, 1]},

@@ -82,6 +82,7 @@ def test_the_largest_exponent_is_that_of_lyapunov(name):
 def test_equal_reducers_are_one_in_a_set():
     event = pc.events.RateZero(link=1)
     given = [R.FirstEvent(event), R.Extremes(), R.EnergyDrift(), R.LargestExponent()]
+    given.append(R.Sensitivities(["q0[1]"]))
     assert {*given} == {*map(replace, given)}
     assert len({*given}) == len(R.REDUCERS)
 

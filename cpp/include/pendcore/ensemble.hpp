@@ -58,6 +58,11 @@ struct MemberResults {
   std::span<double> energy_drift = {};  ///< J, (count); empty if not wanted
   /// 1/s, (count): the largest Lyapunov exponent (lyapunov.hpp); empty if not wanted
   std::span<double> largest_exponent = {};
+  /// (count, 2n, k): d(q, qd)/d(name) at the end of each member that reaches its goal; NaN where it
+  /// has no derivative. Empty if not wanted
+  std::span<double> sensitivities = {};
+  /// (k): "q0[i]" or "qd0[i]", i counted from 1, or parameters (parameters.hpp)
+  std::vector<std::string> sensitivity_names = {};
 };
 
 struct EnsembleLimits {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/sensitivities.hpp"
 #include "arithmetic/floating_point_environment.hpp"
 #include "ensemble/lanes.hpp"
 #include "ensemble/reducers.hpp"
@@ -50,39 +51,55 @@ void keep_first(const MemberResults& results, const std::vector<FoundEvent>& fou
 
 /// Whether a reducer looks on while a run is made.
 bool are_watched(const MemberResults& results) {
-  return !results.extremes.empty() || !results.energy_drift.empty();
+  return !results.extremes.empty() || !results.energy_drift.empty() ||
+         !results.sensitivities.empty();
 }
 
 /// Computes reducers of one run while it is made.
 class RunReducers final : public StepWatch {
  public:
-  RunReducers(const Scene& scene, const MemberResults& results) {
+  RunReducers(const Scene& scene, const Options& options, const MemberResults& results) {
     if (!results.extremes.empty()) extremes_.emplace(scene.links.size());
     if (!results.energy_drift.empty()) drift_.emplace(scene);
+    if (!results.sensitivities.empty()) {
+      check(scene);  // differences by a number that is not finite have no step
+      sensitivities_.emplace(scene, results.sensitivity_names);
+      sensitivities_->keep(Store::end, options);
+    }
   }
-  bool asks_for_dense_output() const override { return extremes_.has_value(); }
+  bool asks_for_dense_output() const override { return extremes_ || sensitivities_; }
   void starts(double t, std::span<const double> y) override {
     if (extremes_) extremes_->starts(t, y);
     if (drift_) drift_->starts(t, y);
+    if (sensitivities_) sensitivities_->starts(t, y);
   }
   void steps(const WatchedStep& step) override {
     if (extremes_) extremes_->steps(step);
     if (drift_) drift_->steps(step);
+    if (sensitivities_) sensitivities_->steps(step);
   }
   void jumps(double t, std::span<const double> y) override {
     if (extremes_) extremes_->jumps(t, y);
     if (drift_) drift_->jumps(t, y);
   }
-  /// Keeps what was found of member i.
+  void changes(const WatchedChange& change) override {
+    if (sensitivities_) sensitivities_->changes(change);
+  }
+  /// Keeps what was found of member i, whose status is known.
   void keep(const MemberResults& results, std::size_t i) const {
     const std::size_t size = results.extremes.size() / results.status.size();
     if (extremes_) extremes_->write(results.extremes.data() + i * size);
     if (drift_) results.energy_drift[i] = drift_->largest();
+    if (sensitivities_ && is_success(results.status[i])) {
+      const std::vector<double>& found = sensitivities_->values();
+      std::ranges::copy(found, results.sensitivities.data() + i * found.size());
+    }
   }
 
  private:
   std::optional<Extremes> extremes_;
   std::optional<EnergyDrift> drift_;
+  std::optional<Sensitivities> sensitivities_;
 };
 
 /// The options with which members are run, for what is wanted of them.
@@ -138,11 +155,11 @@ class OneByOne {
     const std::vector<double> q0{state_.begin(), middle};
     const std::vector<double> qd0{middle, state_.end()};
     const Monitor monitor = [&](double) { return goes_on(); };
-    RunReducers reducers(scene, results_);
     Options options = options_;
     options.monitor = monitor;
-    if (are_watched(results_)) options.watch = &reducers;
     try {
+      RunReducers reducers(scene, options_, results_);
+      if (are_watched(results_)) options.watch = &reducers;
       const Solution solution = simulate(scene, q0, qd0, t0_, t_end_, std::move(options));
       if (solution.status == Status::interrupted) return false;
       if (!results_.largest_exponent.empty() && solution.t_reached != t0_) {
@@ -154,8 +171,8 @@ class OneByOne {
           results_.largest_exponent[i] = found.growth.back() / std::abs(found.t_reached - t0_);
         }
       }
-      reducers.keep(results_, i);
       keep(i, solution);
+      reducers.keep(results_, i);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::invalid_argument&) {
@@ -222,8 +239,8 @@ class MembersOfWorker final : public LaneSource {
     std::ranges::copy(keeps_times_ ? member.recorded.states : member.state,
                       results_.states.data() + member.number * size);
     keep_first(results_, member.recorded.found, member.number);
-    if (watches()) static_cast<const RunReducers&>(*member.watch).keep(results_, member.number);
     results_.status[member.number] = code(member.status);
+    if (watches()) static_cast<const RunReducers&>(*member.watch).keep(results_, member.number);
     work_.count(1);
   }
   void run_alone(std::size_t number) override {
@@ -259,6 +276,9 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   static_cast<void>(make_stepper(scene, chosen_method(scene, options)));
   const Options own = options_of_members(scene, options, results);
   if (!results.largest_exponent.empty()) check_has_exponents(scene);
+  if (!results.sensitivities.empty()) {
+    static_cast<void>(Sensitivities(scene, results.sensitivity_names));
+  }
   EnsembleEnding ending;
   if (members.count == 0) return ending;
   const int workers = number_of_workers(limits, members.count);
@@ -269,9 +289,10 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
     OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
     MembersOfWorker members_of_worker(work, on_calling_thread, one_by_one, results,
                                       own.store == Store::times);
-    // The largest exponent takes a run of its own.
+    // The largest exponent takes a run of its own, and derivatives are found for one at a time.
+    const bool in_lanes = results.largest_exponent.empty() && results.sensitivities.empty();
     const std::unique_ptr<LaneRunner> lanes =
-        results.largest_exponent.empty() ? make_lanes(scene, t0, t_end, own) : nullptr;
+        in_lanes ? make_lanes(scene, t0, t_end, own) : nullptr;
     if (lanes) {
       lanes->run(members_of_worker);
     } else {

@@ -25,7 +25,7 @@ from pendcore.reducers import REDUCERS, Reducer
 
 Keep = str | Reducer | Mapping[str, Reducer]
 _TAKEN = {"status", "t_reached", "q", "qd", "q0", "qd0", "link", "time"}
-_TAKEN |= {axis for kind in REDUCERS for axis in kind.labels(1)}
+_TAKEN |= {axis for kind in REDUCERS for axis in kind.axes}
 _REDUCERS = ", ".join(f"pc.reducers.{one.__name__}" for one in REDUCERS)
 _KEEPS = f'"end", "times", or a reducer or a dictionary of reducers: {_REDUCERS}'
 

@@ -14,7 +14,7 @@ from pendcore._ensemble.request import OPTIONS, Request
 from pendcore._messages.arguments import Floats
 from pendcore._messages.warning import silence
 from pendcore._scene.scene import Scene, check_parameter_names
-from pendcore.reducers import REDUCERS, FirstEvent
+from pendcore.reducers import REDUCERS, FirstEvent, Reducer, Sensitivities
 
 VERSION, CASE, KEEP, VARY = "pendcore", "case", "keep", "vary"
 SHAPE, BLOCK = "shape", "block_shape"
@@ -35,11 +35,14 @@ def about(scene: Scene, vary: list[str], request: Request) -> dict[str, Any]:
 
 
 def _kept(request: Request) -> dict[str, list[Any]]:
-    """Return the kind of each reducer, and the number of its event, if it has one."""
-    return {
-        name: [type(one).__name__, *([request.event_number(name)] * isinstance(one, FirstEvent))]
-        for name, one in request.reducers.items()
-    }
+    """Return the kind of each reducer, and the number of its event, or its names, if it has any."""
+
+    def own(name: str, one: Reducer) -> list[Any]:
+        if isinstance(one, FirstEvent):
+            return [request.event_number(name)]
+        return [[*one.names]] if isinstance(one, Sensitivities) else []
+
+    return {name: [type(x).__name__, *own(name, x)] for name, x in request.reducers.items()}
 
 
 def read_about(told: Mapping[str, Any], t_eval: Floats | None) -> tuple[Scene, Request]:
@@ -57,14 +60,21 @@ def read_about(told: Mapping[str, Any], t_eval: Floats | None) -> tuple[Scene, R
         known = ", ".join(sorted(OPTIONS - {"events"}))
         raise ValueError(f"{CASE}: [run] must have {known}, and no others")
     try:
-        kinds = {name: _KINDS[one[0]] for name, one in told[KEEP].items()}
-        first = len(events) - [*kinds.values()].count(FirstEvent)
+        kinds = {name: (_KINDS[one[0]], one[1:]) for name, one in told[KEEP].items()}
+        first = len(events) - [kind for kind, _ in kinds.values()].count(FirstEvent)
         own = iter(events[max(first, 0) :])  # the last events are those of reducers, in their order
-        made = {x: kind(next(own)) if kind is FirstEvent else kind() for x, kind in kinds.items()}
-    except (AttributeError, IndexError, KeyError, StopIteration, TypeError):
+        made = {
+            name: kind(next(own)) if kind is FirstEvent else kind(*given)
+            for name, (kind, given) in kinds.items()
+        }
+    except (AttributeError, IndexError, KeyError, StopIteration, TypeError, ValueError):
         first, made = -1, {}
     request = Request(case.t_span, t_eval, made, options | {"events": events[: max(first, 0)]})
     require(told, KEEP, first >= 0 and _kept(request) == told[KEEP], "reducers and events")
+    try:
+        request.check_reducers(case.scene)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{KEEP}: {error}") from None
     require(told, VARY, isinstance(told.get(VARY), list), "a list of parameters")
     try:
         check_parameter_names(case.scene._compiled, told[VARY])

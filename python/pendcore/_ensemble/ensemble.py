@@ -20,6 +20,7 @@ from pendcore._messages.progress import Progress
 from pendcore._messages.warning import silence
 from pendcore._run.energy import Energy
 from pendcore._run.solution import Solution
+from pendcore.reducers import Sensitivities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -200,6 +201,8 @@ class Ensemble:
     def member(self, index: Any) -> Solution:
         """Return the run of one member as a full `Solution`, with the bits that it had.
 
+        With `reducers.Sensitivities` it has its sensitivities, and warns if there are none.
+
         Parameters
         ----------
         index : int, tuple of int, or a row of ``failed``
@@ -224,7 +227,7 @@ class Ensemble:
         q0, qd0 = self.members.q0[place], self.members.qd0[place]
         return simulate(
             scene, self.request.t_span, q0, qd0, t_eval=self.request.t_eval, on_failure="ignore",
-            **self.request.of_simulate(),
+            sensitivities=self.request.sensitivity_names, **self.request.of_simulate(),
         )  # fmt: skip
 
     def message(self, index: Any) -> str:
@@ -447,7 +450,10 @@ class Ensemble:
         lines = [f"{len(self)} members {self.shape}, t = {begin:g} to {end:g} s: {told}"]
         lines += [f"varied: {name}" for name in self.members.vary]
         for name, one in self.request.reducers.items():
-            if one.labels(1):
+            if isinstance(one, Sensitivities):
+                has_all = np.isfinite(self[name]).all(axis=(-2, -1))
+                lines.append(f"{name}: in {np.count_nonzero(has_all)} of {len(self)}")
+            if one.axes:
                 continue
             found = self[name]
             some = found[np.isfinite(found)]

@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats
+from pendcore._scene.scene import Scene
 from pendcore.events import Event
-from pendcore.reducers import FirstEvent, Reducer
+from pendcore.reducers import FirstEvent, Reducer, Sensitivities
 
 NOT_RUN: int = _core.member_statuses.index("not_run")
 OPTIONS = {"method", "rtol", "atol", "events", "max_steps", "max_step"}
@@ -63,6 +64,12 @@ class Request:
         own = (x.event for x in self.reducers.values() if isinstance(x, FirstEvent))
         return (*self.options["events"], *own)
 
+    @property
+    def sensitivity_names(self) -> tuple[str, ...]:
+        """The names of all derivatives that are kept."""
+        own = (x.names for x in self.reducers.values() if isinstance(x, Sensitivities))
+        return tuple(next(own, ()))
+
     def event_number(self, name: str) -> int:
         """Return the number of a reducer's event among all events."""
         before = list(self.reducers.values())[: list(self.reducers).index(name)]
@@ -92,10 +99,14 @@ class Request:
         """Return these arrays for members of a shape that were not run."""
         return {one.name: one.empty(shape) for one in self.variables(n)}
 
-    def check_reducers(self) -> None:
+    def check_reducers(self, scene: Scene) -> None:
         """Raise an error for what a reducer cannot be used with."""
         for name in ("rtol", "atol"):
             for one in self.reducers.values():
                 if one.needs_one_tolerance and np.ndim(self.options[name]) > 0:
                     known = f"pc.reducers.{type(one).__name__}()"
                     raise TypeError(f"{name}: must be one number with {known}")
+        if len({x for x in self.reducers.values() if isinstance(x, Sensitivities)}) > 1:
+            raise ValueError("keep: has pc.reducers.Sensitivities twice: give one with all names")
+        if self.sensitivity_names:  # of which the core knows those of the scene
+            _core.Sensitivities(scene._compiled, [*self.sensitivity_names])

@@ -65,7 +65,7 @@ def run_members(
     return _outcome(filled, *_core.ensemble(
         members.scene._compiled, shape, members.q0, members.qd0,
         list(members.vary), [values[..., np.newaxis] for values in members.vary.values()],
-        *request.t_span, given, workers, time_limit, progress,
+        *request.t_span, given, workers, time_limit, progress, request.sensitivity_names,
         arrays["status"], arrays["t_reached"], states, *(kept.get(kind) for kind in REDUCERS),
     ))  # fmt: skip
 

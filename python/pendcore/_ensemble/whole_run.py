@@ -49,7 +49,7 @@ def execution(owner: str, given: dict[str, Any], others: Iterable[str] = ()) -> 
 def run_ensemble(members: Members, request: Request, how: Execution) -> Ensemble:
     """Run members; arguments are checked before the first of them."""
     require_on_failure(how.on_failure)
-    request.check_reducers()
+    request.check_reducers(members.scene)
     workers = 0 if how.workers is None else at_least("workers", how.workers, 1)
     chunk = 0 if how.chunk is None else at_least("chunk", how.chunk, 1)
     limit = time_limit_of(how.time_limit)

@@ -61,7 +61,7 @@ def plot(
 
     reducers = found.request.reducers
     if what is None:
-        what = next((x for x, one in reducers.items() if not one.labels(1)), "q[1]")
+        what = next((x for x, one in reducers.items() if not one.axes), "q[1]")
     shown = shown_of(values_of(found, what), what, reducers.get(what), ~found.success)
     if len(found.shape) not in (1, 2):
         raise ValueError(
@@ -84,7 +84,7 @@ def values_of(found: Ensemble, what: str) -> Floats:
     require_name(what)
     reducers, n = found.request.reducers, len(found.members.scene.links)
     if what in reducers:
-        if reducers[what].labels(1):
+        if reducers[what].axes:
             raise ValueError(f"what = {what!r}: has several numbers for each member: draw them")
         return found[what]
     if found.request.t_eval is not None:

@@ -139,7 +139,7 @@ def _reducer(show: str, case: Case) -> Reducer | None:
         if not events:
             raise UsageError('show = "first_event": the case has no [[event]]')
         return FirstEvent(events[0])
-    kinds = {x.usual_name: x for x in REDUCERS if x is not FirstEvent and not x.labels(1)}
+    kinds = {x.usual_name: x for x in REDUCERS if x is not FirstEvent and not x.axes}
     if show in kinds:
         return kinds[show]()
     component = re.fullmatch(r"qd?\[(\d+)\]", show)
