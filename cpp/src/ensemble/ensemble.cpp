@@ -135,6 +135,7 @@ class OneByOne {
         values_(choice.size()) {}
 
   const Statistics& statistics() const { return statistics_; }
+  const Options& options() const { return options_; }
 
   /// Reads member i, and returns its scene, which is valid until the next call.
   const Scene& read(std::size_t i, std::vector<double>& state) {
@@ -225,7 +226,8 @@ class MembersOfWorker final : public LaneSource {
     return &one_by_one_.read(member.number, member.state);
   }
   std::unique_ptr<StepWatch> watch(const Scene& scene) override {
-    return watches() ? std::make_unique<RunReducers>(scene, results_) : nullptr;
+    return watches() ? std::make_unique<RunReducers>(scene, one_by_one_.options(), results_)
+                     : nullptr;
   }
   bool watches() const override { return are_watched(results_); }
   bool watches_dense_output() const override { return !results_.extremes.empty(); }
