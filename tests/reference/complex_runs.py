@@ -170,7 +170,9 @@ class HybridRun:
             return g(t + x, midpoint_rule(self.rates, t, y, x))
 
         low, high = 0.0, h.real
-        while value(low).real < 1e-11:  # it begins at a zero, where a joint leaves its stop
+        for _ in range(40):  # it may begin at a zero, where a joint leaves its stop
+            if value(low).real >= 1e-11:
+                break
             low = 0.5 * (low or h.real)
         a, b = low, high
         g_a, g_b = value(low).real, value(high).real
