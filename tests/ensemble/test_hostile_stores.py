@@ -230,7 +230,7 @@ CHANGED += [  # no name leads out of a store
 CHANGED += [  # names of derivatives
     ("", {"attributes/keep": {"a": ["Sensitivities", names]}}, told)
     for names, told in [
-        (["gravty"], 'keep: parameter "gravty": the scene has none of that name'),
+        (["gravty"], 'keep: sensitivities: parameter "gravty": the scene has none of that name'),
         ("gravity", "must be reducers and events"),
         ([], "must be reducers and events"),
     ]

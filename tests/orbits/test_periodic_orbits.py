@@ -266,3 +266,31 @@ def test_bad_input_and_what_is_not_found_are_told():
         pc.periodic_orbit(spring, 0.5, [9.0, 9.0], 1.0, turns=1)
     with pytest.raises(ValueError, match=r"qd0: 3 rows: must be as many as q0 has, 2"):
         pc.periodic_orbit(TEXTBOOK, np.zeros((2, 2)), np.zeros((3, 2)), 1.0)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.6])
+def test_an_orbit_with_an_impact_is_where_long_runs_settle(restitution):
+    """In each period, the damper takes exp(-c T/I) from the multipliers' product, the stop e^2."""
+    push = pc.effects.Sinusoid(amplitude=2.0, angular_frequency=4.6)
+    scene = pc.Scene(
+        links=[pc.Link(mass=1.0, length=1.0)],
+        effects=[
+            pc.effects.Motor(joint=1, sinusoid=push),
+            pc.effects.ViscousJoint(joint=1, damping=0.05),
+            pc.effects.JointStop(joint=1, range=(-9, 1.8), restitution=restitution),
+        ],
+    )
+    orbit = pc.periodic_orbit(scene, 1.4)
+    product = restitution**2 * np.exp(-0.05 * 3 * orbit.period)
+    assert abs(orbit.multipliers.prod()) == pytest.approx(product, rel=1e-11)
+    assert orbit.is_stable
+    settled = pc.simulate(scene, (0, 150 * orbit.period), 1.4, store="end", rtol=1e-12)
+    np.testing.assert_allclose(settled.q[-1], orbit.q0, atol=1e-9)
+    np.testing.assert_allclose(settled.qd[-1], orbit.qd0, atol=1e-8)
+
+
+@pytest.mark.filterwarnings("ignore:sensitivities")
+def test_what_has_no_derivative_has_no_orbit():
+    locked = pc.Scene.textbook().replace(effects=[pc.effects.Lock(joint=2)])
+    with pytest.raises(RuntimeError, match="has no derivative by its start"):
+        pc.periodic_orbit(locked, 0.5, period=2.5)

@@ -292,7 +292,8 @@ def periodic_orbit(
     Parameters
     ----------
     scene : Scene
-        What moves, without locks, dry friction and stops: derivatives of runs are needed.
+        What moves, without locks. Orbits may go through impacts and sticking, whose derivatives
+        `simulate` knows; a stick makes a multiplier zero.
     q0, qd0 : array_like, (n,) or (m, n)
         A guess: angles, rad, and rates, rad/s. With m rows they are guesses at m equal times of a
         period, for orbits so unstable that no run stays close to them.

@@ -81,8 +81,13 @@ def velocity(scene: Scene, t: float, state: Floats) -> Floats:
 
 
 def derivatives(run: Solution) -> Floats:
-    """The derivatives that were asked for, (n_t, 2n, k)."""
+    """The derivatives that were asked for, (n_t, 2n, k); an error where there are none."""
     assert run.sensitivities is not None
+    if not np.isfinite(run.sensitivities).all():
+        raise NotClosedError(
+            f"the motion from q0 = {run.q[0].round(6).tolist()} has no derivative by its start, at "
+            "least not to its end: the warning of the run says why; begin elsewhere"
+        )
     return run.sensitivities
 
 
