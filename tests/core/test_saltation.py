@@ -129,6 +129,69 @@ def test_back_in_time() -> None:
     np.testing.assert_allclose(product, np.eye(4), rtol=0, atol=1e-8)
 
 
+def slopes(scene: pc.Scene, span: Any, q0: Any, qd0: Any, name: str) -> Any:
+    """Central differences of the end, extrapolated."""
+    value = scene.parameters().get(name)
+
+    def end(by: float) -> Any:
+        start, there = np.array(q0, float), scene
+        if value is None:
+            start[int(name[3]) - 1] += by
+        else:
+            there = scene.with_parameters({name: value + by})
+        return pc.simulate(there, span, start, qd0, store="end", **EXACTLY).y[:, -1]
+
+    coarse, fine = ((end(by) - end(-by)) / (2 * by) for by in (2e-4, 1e-4))
+    return (4 * fine - coarse) / 3
+
+
+TABLE = E.Table(t=[0, 0.5, 3], torque=[0.0, 6.0, 6.0], hold=True)
+RAMP = E.Table(t=[0, 0.3, 0.6, 1.0, 1.5], torque=[0.0, 3.0, -4.0, 5.0, 0.0])
+BREAKS: dict[str, tuple[pc.Scene, Any, Any, Any, list[str]]] = {
+    "a load that jumps sets a joint free": (
+        pc.Scene(links=[ROD], effects=[
+            E.DryJointFriction(joint=1, coulomb=2.0), E.Motor(joint=1, table=TABLE),
+            E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=0.5, angular_frequency=2.0)),
+        ]), (0, 1), [np.pi / 2], [0.0], ["q0[1]", "effect[1].coulomb", "gravity"],
+    ),
+    "back in time over the points of a table": (
+        pc.Scene(links=[ROD, ROD], effects=[E.Motor(joint=1, table=RAMP)]),
+        (1.2, 0.1), [0.5, 0.2], [0.3, 1.0], ["q0[1]", "gravity"],
+    ),
+    "a table that meets a limit": (
+        pc.Scene(links=[ROD], effects=[
+            E.Motor(joint=1, limit=3.5, table=E.Table(t=[0, 1, 2], torque=[0, 6, 6])),
+        ]), (0, 1), [0.5], [0.0], ["q0[1]", "effect[1].limit"],
+    ),
+    "a joint that friction locks beside one that bounces to rest": (
+        pc.Scene(links=[ROD, ROD], effects=[
+            E.JointStop(joint=2, range=(-0.8, 1.0), restitution=0.4),
+            E.DryJointFriction(joint=1, coulomb=30.0),
+        ]), (0, 1), [0.3, 0.5], [0.0, 0.0], ["q0[1]"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BREAKS)
+def test_derivatives_at_given_times_and_in_quick_succession(case: str) -> None:
+    scene, span, q0, qd0, names = BREAKS[case]
+    sol = pc.simulate(scene, span, q0, qd0, store="end", sensitivities=names, **EXACTLY)
+    assert sol.sensitivities is not None
+    for column, name in enumerate(names):
+        right = slopes(scene, span, q0, qd0, name)
+        np.testing.assert_allclose(sol.sensitivities[-1, :, column], right, rtol=0, atol=2e-8)
+
+
+def test_one_name_without_a_derivative_leaves_those_of_the_others() -> None:
+    effects = [E.JointStop(joint=2, range=(-0.8, 1.0)), E.DryJointFriction(joint=1, coulomb=0.3)]
+    scene = pc.Scene(links=[ROD, pc.Link(mass=0.8, length=0.7)], effects=effects)
+    alone = derivatives(scene, 2.0, [0.3, 0.5], 0.0, ["gravity"])
+    with pytest.warns(pc.PendcoreWarning, match=r'none of "effect\[1\]\.restitution" after'):
+        both = derivatives(scene, 2.0, [0.3, 0.5], 0.0, ["gravity", "effect[1].restitution"])
+    np.testing.assert_allclose(both[:, 0], alone[:, 0], rtol=1e-9)
+    assert np.isnan(both[:, 1]).all()
+
+
 # Where they are kept ----------------------------------------------------------------------------
 
 
@@ -182,15 +245,23 @@ REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, list[str], str]] = {
     ),
     "a start that friction holds": (
         WEIGHTLESS.replace(effects=[E.DryJointFriction(joint=1, coulomb=1.0)]), 1.0, 0.8, 0.0,
-        ["qd0[1]"], r'none of "qd0\[1\]": joint 1 is held by friction, and slides otherwise',
+        ["qd0[1]"], r'none of "qd0\[1\]": joint 1 is at rest, where its friction differs to either',
+    ),
+    "a start at rest that friction does not hold": (
+        pc.Scene(links=[ROD]).replace(effects=[E.DryJointFriction(joint=1, coulomb=1.0)]), 1.0,
+        0.3, 0.0, ["qd0[1]"], r'none of "qd0\[1\]": joint 1 is at rest, where its friction differs',
+    ),
+    "a start at rest at a stop that it leaves": (
+        pc.Scene(links=[ROD]).replace(effects=[E.JointStop(joint=1, range=(0.3, 9.0))]), 1.0,
+        0.3, 0.0, ["qd0[1]"], r'none of "qd0\[1\]": joint 1 is at its stop',
     ),
     "friction just at its limit": (
         pc.Scene(links=[ROD]).replace(effects=[E.DryJointFriction(joint=1, coulomb=9.807 / 2)]),
         1.0, 0.0, 0.0, ["q0[1]"], "the torques on joint 1 only just hold it",
     ),
     "a restitution that is zero": (
-        WEIGHTLESS.replace(effects=[E.JointStop(joint=1, range=(-9, 0.8))]), 1.0, 0.2, 3.0,
-        ["effect[1].restitution"], "the restitution of joint 1 is 0, and can only grow",
+        pc.Scene(links=[ROD]).replace(effects=[E.JointStop(joint=1, range=(-9, 0.8))]), 1.0, 0.2,
+        3.0, ["effect[1].restitution"], "the restitution of joint 1 is 0, and can only grow",
     ),
 }  # fmt: skip
 

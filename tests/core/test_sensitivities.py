@@ -273,6 +273,9 @@ REFUSED = {
     "the angle of a lock": (
         E.Lock(joint=2, angle=0.2), ["effect[1].angle"], r"a run starts at the angle of effect 1",
     ),
+    "a law without sides": (
+        E.ViscousJoint(joint=1, damping=0.1), ["effect[1].damping2"], "is 0.0, and the run does",
+    ),
     "no parameter": (E.Payload(mass=1.0), ["lnk[1].mass"], r'did you mean "link\[1\]\.mass"'),
 }  # fmt: skip
 

@@ -289,8 +289,21 @@ def test_an_orbit_with_an_impact_is_where_long_runs_settle(restitution):
     np.testing.assert_allclose(settled.qd[-1], orbit.qd0, atol=1e-8)
 
 
-@pytest.mark.filterwarnings("ignore:sensitivities")
 def test_what_has_no_derivative_has_no_orbit():
     locked = pc.Scene.textbook().replace(effects=[pc.effects.Lock(joint=2)])
-    with pytest.raises(RuntimeError, match="has no derivative by its start"):
+    with pytest.raises(ValueError, match=r"scene: effect 1 \(lock\): the rate of a locked joint"):
         pc.periodic_orbit(locked, 0.5, period=2.5)
+    stop = pc.effects.JointStop(joint=1, range=(-9, np.pi / 2), restitution=1.0)
+    at_its_stop = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[stop])
+    with pytest.raises(RuntimeError, match="has no derivative by its start"):
+        pc.periodic_orbit(at_its_stop, np.pi / 2, -1.0, period=0.8)
+
+
+def test_impossible_sizes_are_refused():
+    with pytest.raises(ValueError, match="arcs = 1000: must be 1 to 200"):
+        pc.periodic_orbit(pc.Scene.textbook(), [0.6, 0.3], period=2.6, arcs=1000)
+    with pytest.raises(ValueError, match=r"turns: shape \(3,\): must be one number, or \(2,\)"):
+        pc.periodic_orbit(pc.Scene.textbook(), [0.6, 0.3], period=2.6, turns=[0, 0, 0])
+    orbit = pc.periodic_orbit(pc.Scene(links=[pc.Link(mass=1.0, length=1.0)]), 0.5)
+    with pytest.raises(ValueError, match="step = inf: must be finite and > 0"):
+        orbit.continued("energy", until=-1.0, step=float("inf"))

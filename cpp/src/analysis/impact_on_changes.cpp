@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <Eigen/LU>
+#include <limits>
 
 #include "arithmetic/epsilon.hpp"
 #include "dynamics/kinematics.hpp"
 #include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 
@@ -120,7 +122,9 @@ std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes
       const double slope = one.supports[j].stop(side).restitution;
       if (slope == 0.0) continue;
       if (stop.restitution == 0.0) {
-        return "the restitution of " + joint_name(j) + " is 0, and can only grow";
+        changes.col(one.column).setConstant(std::numeric_limits<double>::quiet_NaN());
+        remark_ = "sensitivities: none of \"" + one.name + "\" after t = " + text(change.t) +
+                  " s: the restitution of " + joint_name(j) + " is 0, and can only grow";
       }
       if (restitution[a] != 0.0) by_restitution[a][one.column] = slope;
     }

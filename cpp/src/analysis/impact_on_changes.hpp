@@ -29,6 +29,8 @@ class ImpactOnChanges {
   /// Brings changes (2n, k) of the state before the impact, at its time, to those after it. The
   /// laws before it are in force. Returns why there are none, or nothing.
   std::string strike(const WatchedChange& change, Matrix& changes);
+  /// Why some names alone have none any more, or nothing: their changes are NaN.
+  const std::string& remark() const { return remark_; }
 
  private:
   Matrix torques_of_changed_mass(const Numbers& q, const Vector& x, const Matrix& changes);
@@ -38,6 +40,7 @@ class ImpactOnChanges {
   Eigen::Index k_;
   JointForces forces_;  ///< on the joints that no lock holds
   InverseDynamics<AlongParameters> of_mass_;
+  std::string remark_;
 };
 
 }  // namespace pendcore

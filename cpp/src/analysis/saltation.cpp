@@ -6,6 +6,7 @@
 
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/extrapolated_slope.hpp"
+#include "dynamics/contact/impact_laws.hpp"
 #include "dynamics/kinematics.hpp"
 #include "pendcore/parameters.hpp"
 #include "scene/effects_of_scene.hpp"
@@ -49,7 +50,7 @@ Saltation::Saltation(VariationalEquations& equations)
       impact_(equations) {}
 
 std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
-  equations_.take_laws(change.t, change.equations);
+  take_laws(change);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto refuse_all = [&](const std::string& why) {
     changes.setConstant(none);
@@ -60,28 +61,32 @@ std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
   const HeldJoints& joints = *equations_.equations().held_joints;
   std::string told;
   for (int j = 0; j < n_; ++j) {
-    const Side side = joints.contact(j, change.after.data());
-    const bool is_locked = joints.supports()[j].is_locked;
-    if (!joints.is_held(j) && side == Side::none) continue;
+    const JointSupport& support = joints.supports()[j];
+    const Side side = support.is_locked ? Side::none : joints.contact(j, change.after.data());
+    const bool is_at_rest = relative(change.after.data() + n_, j + 1) == 0.0;
+    // A change of its rate meets another law on either side of rest.
+    const bool may_not_turn =
+        support.is_locked ||
+        (is_at_rest && (side != Side::none || !support.friction_effects.empty()));
+    if (!may_not_turn && side == Side::none) continue;
     Vector angles = relative_rows(changes, 0, j);
     const Vector rates = relative_rows(changes, n_, j);
-    if (side != Side::none && !is_locked) {
+    if (side != Side::none) {
       for (const auto& one : equations_.parameters()) {
         angles[one.column] -= one.supports[j].stop(side).angle;
       }
     }
     for (Eigen::Index column = 0; column < k_; ++column) {
-      const bool turns = joints.is_held(j) && rates[column] != 0.0;
-      const bool leaves = side != Side::none && !is_locked && angles[column] != 0.0;
+      const bool turns = may_not_turn && rates[column] != 0.0;
+      const bool leaves = side != Side::none && angles[column] != 0.0;
       if (!turns && !leaves) continue;
       changes.col(column).setConstant(none);
       told.append(told.empty() ? "sensitivities: none of \"" : ", \"")
           .append(equations_.names()[static_cast<std::size_t>(column)])
           .append("\": " + joint_name(j))
-          .append(is_locked            ? " is locked, and this would turn it"
+          .append(support.is_locked    ? " is locked, and this would turn it"
                   : side != Side::none ? " is at its stop, and moves from there to one side only"
-                                       : " is held by friction, and slides otherwise to either "
-                                         "side");
+                                       : " is at rest, where its friction differs to either side");
     }
   }
   return told;
@@ -94,31 +99,32 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   f_after.head(n_) = View(change.after.data() + n_, n_);
   accelerations_in_force(change.equations, change.t, change.after.data(), change.after.data() + n_,
                          f_after.data() + n_);
-  const double size = std::max(largest(f), largest(f_after));
-  const bool is_continuous =
-      !change.jumped && largest(f_after - f) <= rounding_of_rates * std::max(size, 1e-300);
-  if (is_continuous) {
-    equations_.take_laws(change.t, change.equations);
-    return {};
-  }
-  const double moment =
-      64.0 * epsilon *
-      std::max(std::abs(change.t), 1.0 / equations_.equations().held_joints->natural_speed());
-  const bool is_again = std::abs(change.t - last_) <= moment;
-  last_ = change.t;
+  const double natural = equations_.equations().held_joints->natural_speed();
+  const double size = std::max({largest(f), largest(f_after), natural * natural});
+  const bool is_continuous = !change.jumped && largest(f_after - f) <= rounding_of_rates * size;
+  const double moment = 64.0 * epsilon * std::max(std::abs(change.t), 1.0 / natural);
+  const bool is_again = std::abs(change.t - last_) <= moment && !follows_the_last(change);
   if (change.guard == nullptr) {
-    if (is_again && !was_given_) return "two of its laws change at that time";
+    if (is_again && !was_given_ && !is_continuous) return "two of its laws change at that time";
+    last_ = change.t;
+    last_jumped_ = false;
     was_given_ = true;
-    equations_.take_laws(change.t, change.equations);
-    return border(change);
+    take_laws(change);
+    return is_continuous ? "" : border(change);
   }
   const JointGuard guard = *change.guard;
-  if (is_again) {
-    // A load that jumped at a given time may release a joint there; anything else is two at once.
-    if (!was_given_ || guard.is_linear()) return "two of its laws change at that time";
-    equations_.take_laws(change.t, change.equations);
+  // What holds a joint takes a jump of the load, and may let it go at that given time.
+  if (is_again && was_given_ && !guard.is_linear()) {
+    take_laws(change);
     return border(change);
   }
+  if (is_continuous) {
+    take_laws(change);
+    return {};
+  }
+  if (is_again) return "two of its laws change at that time";
+  last_ = change.t;
+  last_jumped_ = change.jumped;
   was_given_ = false;
 
   const std::optional<Crossing> found = crossing(change, f, changes);
@@ -135,9 +141,23 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
     if (std::string why = impact_.strike(change, after); !why.empty()) return why;
   }
   changes = after - f_after * shift.transpose();
-  equations_.take_laws(change.t, change.equations);
+  take_laws(change);
   settle(changes);
   return border(change);
+}
+
+void Saltation::take_laws(const WatchedChange& change) {
+  equations_.take_laws(change.t, change.equations, change.forward);
+}
+
+/// Whether a change that comes at once is no coincidence: friction stops a joint that an impact has
+/// set in motion, or the last of many bounces changes next to nothing.
+bool Saltation::follows_the_last(const WatchedChange& change) const {
+  if (change.guard == nullptr) return false;
+  if (change.guard->kind == Kind::friction) return last_jumped_;
+  if (change.guard->stop() == Side::none) return false;
+  const double rate = relative(change.before.data() + n_, change.guard->joint + 1);
+  return std::abs(rate) <= noticeable_rate * equations_.equations().held_joints->natural_speed();
 }
 
 /// A joint that is held does not turn, to the last bit.
@@ -205,7 +225,7 @@ std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedCh
   found.grazes = std::abs(found.slope) <= near_miss * size * speed;
   for (Eigen::Index column = 0; column < k_; ++column) {
     const Vector direction = changes.col(column);
-    if (largest(direction) == 0.0) continue;
+    if (largest(direction) == 0.0 || !direction.allFinite()) continue;
     const auto slope = extrapolated_slope(
         here, [&](double h) { return torque(change.t, y + h * direction); }, step_along(direction),
         size);

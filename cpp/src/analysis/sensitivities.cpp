@@ -51,11 +51,11 @@ struct Sensitivities::Variation {
   double t_start = 0.0;
   double tolerance = least_tolerance;
 
-  // Of the part of a step that is under way.
+  // The part of a step that is under way.
   int points_at_once = 8;
   bool has_points_to_spare = false;
   std::vector<double> thetas{}, states{}, decay{};
-  Vector floor{};       ///< what rounding alone makes of d qdd/d p, (k)
+  Vector floor{};      ///< what rounding alone makes of d qdd/d p, (k)
   int parts_left = 0;  ///< into which the step may still be cut
   Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
@@ -213,6 +213,8 @@ void Sensitivities::Variation::change_laws(const WatchedChange& change) {
         is_over = !now.array().isFinite().any();
       } else if (const std::string why = saltation->pass(change, now); !why.empty()) {
         refuse_from(change.t, why);
+      } else if (refusal.empty()) {
+        refusal = saltation->remark();
       }
     } catch (const std::invalid_argument& error) {
       refuse_from(change.t, error.what());

@@ -9,6 +9,7 @@
 #include "pendcore/effects/motor.hpp"
 #include "pendcore/parameters.hpp"
 #include "scene/effects_of_scene.hpp"
+#include "text/message.hpp"
 
 namespace pendcore {
 namespace {
@@ -20,8 +21,8 @@ int number_of(const std::string& name, const std::string& kind, int n) {
   for (int i = 0; i < n; ++i) {
     if (name == kind + "[" + std::to_string(i + 1) + "]") return i;
   }
-  throw std::invalid_argument("sensitivities: \"" + name + "\": must be " + kind + "[1] to " +
-                              kind + "[" + std::to_string(n) + "]");
+  throw std::invalid_argument("sensitivities: \"" + name + "\": must be " + kind + "[1]" +
+                              (n > 1 ? " to " + kind + "[" + std::to_string(n) + "]" : ""));
 }
 
 /// The same scene with a motor that gives nothing in each joint whose torque is named, and the
@@ -42,6 +43,11 @@ Scene with_torques(Scene scene, std::vector<std::string>& names) {
   return scene;
 }
 
+double value_of(const Scene& scene, const std::string& name) {
+  const std::vector<NamedNumber> all = parameters(scene);
+  return std::ranges::find(all, name, &NamedNumber::name)->value;
+}
+
 void require_parameter(const Scene& scene, const std::string& name) {
   if (name.starts_with("q[") || name.starts_with("qd[")) {
     throw std::invalid_argument("sensitivities: \"" + name +
@@ -53,6 +59,15 @@ void require_parameter(const Scene& scene, const std::string& name) {
     throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
                                 "; others are q0[i], qd0[i] and torque[j]");
   }
+  const double value = value_of(scene, name);
+  Scene other = scene;
+  ParameterChoice(scene, {name}).set(other, std::vector{value + 1e-9 * std::max(1.0, value)});
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (other.effects[i]->has_modes() == scene.effects[i]->has_modes()) continue;
+    throw std::invalid_argument("sensitivities: \"" + name + "\": is " + text(value) +
+                                ", and the run does not look for the sides of the law that it "
+                                "would have with a little more: give another value");
+  }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!scene.effects[i].is<Lock>() || name != "effect[" + std::to_string(i + 1) + "].angle") {
       continue;
@@ -61,11 +76,6 @@ void require_parameter(const Scene& scene, const std::string& name) {
                                 effect_name(scene, i) +
                                 ": leave the angle out, and name the start, q0[i]");
   }
-}
-
-double value_of(const Scene& scene, const std::string& name) {
-  const std::vector<NamedNumber> all = parameters(scene);
-  return std::ranges::find(all, name, &NamedNumber::name)->value;
 }
 
 /// (1 / 2h) (ahead - behind), which is exact up to rounding: supports are linear in parameters.
@@ -130,27 +140,27 @@ Matrix VariationalEquations::changes_of_start() const {
 void VariationalEquations::choose_laws(double t, const double* y) {
   if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
   modes_ = modes_at(scene_, t, y, y + n_);
-  put_along(t);
+  put_along(t, true);
 }
 
-void VariationalEquations::take_laws(double t, const EquationsOfMotion& run) {
+void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, bool forward) {
   modes_ = equations_.effects->modes;  // the run does not have the motors of named torques
   std::ranges::copy(run.effects->modes, modes_.begin());
   for (std::size_t i = 0; i < modes_.size(); ++i) equations_.effects->put_mode(i, modes_[i]);
   equations_.held_joints->restore(*equations_.effects, run.held_joints->saved_state(),
                                   run.held_joints->has_failed());
-  put_along(t);
+  put_along(t, forward);
 }
 
 /// Makes what depends on modes and holds.
-void VariationalEquations::put_along(double t) {
+void VariationalEquations::put_along(double t, bool forward) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
   forces_.emplace(scene_, held);
   for (int j = 0; j < n_; ++j) {
     if (!held[j]) forces_->joints.push_back(j);
   }
-  mechanisms_ = mechanisms_along(scene_, modes_, t, names_of_parameters_);
+  mechanisms_ = mechanisms_along(scene_, modes_, t, forward, names_of_parameters_);
 }
 
 void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q,

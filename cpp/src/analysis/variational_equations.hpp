@@ -55,7 +55,7 @@ class VariationalEquations {
   /// Takes the laws that a state calls for, of a scene whose laws stay.
   void choose_laws(double t, const double* y);
   /// Takes the laws of a run: its modes, and the joints that it holds.
-  void take_laws(double t, const EquationsOfMotion& run);
+  void take_laws(double t, const EquationsOfMotion& run, bool forward);
 
   /// What the equations are at a state y: by_q and by_qd, (n, n), and by each of the parameters,
   /// (n, parameters).
@@ -68,7 +68,7 @@ class VariationalEquations {
   }
 
  private:
-  void put_along(double t);
+  void put_along(double t, bool forward);
 
   std::vector<std::string> names_, known_names_;
   Scene scene_;

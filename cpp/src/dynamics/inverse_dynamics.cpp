@@ -68,19 +68,27 @@ Mechanism<AlongParameters> with_slopes(const Mechanism<double>& plain) {
   return result;
 }
 
-/// Whether a change of a limit cuts a table into other pieces before time t.
-bool has_other_pieces(const Scene& changed, const std::vector<int>& modes, double t) {
-  for (std::size_t i = 0; i < modes.size(); ++i) {
-    const bool has_table = std::isfinite(changed.effects[i]->last_time());
-    if (has_table && changed.effects[i]->mode_at(t, 0.0, 0.0, true) != modes[i]) return true;
+/// Whether a change of a limit cuts a table into other pieces: by the one that holds from time t,
+/// in its middle, because its ends move.
+bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool forward) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (!std::isfinite(effect.last_time())) continue;
+    const double next = effect.next_time(t, forward);
+    const double within = std::isfinite(next) ? 0.5 * (t + next) : t;
+    const auto mode = [&](const EffectBehaviour& one) {
+      return one.mode_at(within, 0.0, 0.0, forward);
+    };
+    if (mode(*changed.effects[i]) != mode(effect)) return true;
   }
   return false;
 }
 
 /// The slopes of all numbers of a mechanism along one of some parameters, which have these values.
 std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                 const ParameterChoice& choice, std::vector<double> values,
-                                 const std::vector<std::string>& names, std::size_t which) {
+                                 bool forward, const ParameterChoice& choice,
+                                 std::vector<double> values, const std::vector<std::string>& names,
+                                 std::size_t which) {
   const double value = values[which];
   Mechanism<double> here = mechanism(scene, modes);
   const std::vector<double*> numbers = numbers_of(here);
@@ -89,7 +97,7 @@ std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& mod
     values[which] = at;
     choice.set(copy, values);
     std::vector<double> result;
-    if (has_other_pieces(copy, modes, t)) return result;
+    if (has_other_pieces(scene, copy, t, forward)) return result;
     Mechanism<double> there = mechanism(copy, modes);
     result.reserve(numbers.size());
     for (const double* each : numbers_of(there)) result.push_back(*each);
@@ -168,6 +176,7 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
 
 std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
                                                          const std::vector<int>& modes, double t,
+                                                         bool forward,
                                                          const std::vector<std::string>& names) {
   const ParameterChoice choice(scene, names);
   const std::vector<NamedNumber> known = parameters(scene);
@@ -188,7 +197,8 @@ std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
         *duals[i] = AlongParameters(*numbers[i]);
       }
     }
-    const std::vector<double> slopes = slopes_along(scene, modes, t, choice, values, names, which);
+    const std::vector<double> slopes =
+        slopes_along(scene, modes, t, forward, choice, values, names, which);
     const std::vector<AlongParameters*> duals = numbers_of(result.back());
     for (std::size_t i = 0; i < duals.size(); ++i) {
       set_lane(duals[i]->slope, static_cast<int>(lane), slopes[i]);

@@ -31,6 +31,7 @@ class Modes {
   explicit Modes(const EquationsOfMotion& equations);
 
   void set_direction(bool forward);
+  bool is_forward() const { return forward_; }
   const ChangesAtOnce& changes() const { return changes_; }
   /// Continues a run from the modes and the changes() that another one had at t.
   void restore(const std::vector<int>& modes, const ChangesAtOnce& changes, double t);

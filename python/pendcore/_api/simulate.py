@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from pendcore import _core
 from pendcore._messages.arguments import listed_names, no_time_span, number
+from pendcore._messages.handed_over import hand_over
 from pendcore._messages.progress import ProgressBar, callback, close
 from pendcore._messages.warning import warn
 from pendcore._run.call import Start, completed
@@ -114,9 +115,9 @@ def simulate(
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
     wanted = asked.pop("sensitivities", None) if "sensitivities" in asked else None
+    names: tuple[str, ...] = listed_names("sensitivities", wanted, "q0[1]") if wanted else ()
     if error is not None:
         require_options(asked, simulate)
-        names = listed_names("sensitivities", wanted, "q0[1]") if wanted else ()
         if names:  # a wrong name is told before anything runs
             _core.Sensitivities(scene._compiled, list(names))
         start = Start(scene, q0, qd0, t_start, t_end)
@@ -127,8 +128,7 @@ def simulate(
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
     watch = None
-    if wanted:
-        names = listed_names("sensitivities", wanted, "q0[1]")
+    if names:
         watch = _core.Sensitivities(scene._compiled, list(names))
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)
@@ -151,7 +151,11 @@ def _find_sensitivities(solution: Solution, names: tuple[str, ...]) -> None:
     """Find the derivatives along a run that is there."""
     from pendcore._run.sensitivities import derivatives_of
 
-    watch = derivatives_of(solution, names)
+    try:  # what was promised of the run's time is kept already
+        watch = derivatives_of(solution, names, time_limit=float("inf"))
+    except BaseException as stop:
+        hand_over(stop, solution=solution)
+        raise
     solution.sensitivities, solution.sensitivity_names = watch.values, names
     if watch.refusal:
         warn(watch.refusal)

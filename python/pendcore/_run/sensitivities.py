@@ -45,12 +45,21 @@ def errors_of(solution: Solution) -> Floats:
     if backward:
         times = -times
     t_end = solution.t[-1] if solution.t[-1] != asked["t_start"] else asked["t_end"]
-    more = {"t_eval": times, "store": None, "t_end": t_end, "events": (), "max_steps": 10**9}
+    # The other run has an event a little earlier or later: at its very time, one of the two is
+    # before it. There, the error is that of the times around; at the end, of a moment before.
+    grid = times
+    if len(times) > 1:
+        moment = min(1e-7, 0.5 * abs(np.diff(times)[-1] / (times[-1] - times[0])))
+        grid = np.insert(times, -1, times[-1] - moment * (times[-1] - times[0]))
+    more: dict[str, Any] = {"t_eval": grid, "store": None, "t_end": t_end, "events": ()}
+    more |= {"max_steps": 10**9, "time_limit": float("inf")}
     found = derivatives_of(solution, solution.sensitivity_names, **closer, **more).values
     latest = np.append(np.flatnonzero(np.diff(places)), len(places) - 1)  # after a jump
-    errors: Floats = np.abs(solution.sensitivities[latest] - found).max(axis=1)
-    # The other run has an event a little earlier or later: at its very time, one of the two is
-    # before it. There, the error is that of the times around.
-    around = np.maximum(errors[:-2], errors[2:])
-    errors[1:-1] = np.minimum(errors[1:-1], around)
+    kept = solution.sensitivities[latest]
+    if len(times) == 1:
+        errors: Floats = np.abs(kept - found).max(axis=1)
+        return errors[places]
+    errors = np.abs(kept - np.delete(found, -2, axis=0)).max(axis=1)
+    errors[-1] = np.minimum(errors[-1], np.abs(kept[-1] - found[-2]).max(axis=0))
+    errors[1:-1] = np.minimum(errors[1:-1], np.maximum(errors[:-2], errors[2:]))
     return errors[places]

@@ -18,7 +18,7 @@ from pendcore.orbits.shooting import (
 )
 
 SHORTEST = 1e-6
-"""Of the steps that are tried: below it the family is lost."""
+"""The least step that is tried: below it the family is lost."""
 EASY = 5
 """So few corrections that the next step may be longer."""
 STAYS = 10

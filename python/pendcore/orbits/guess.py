@@ -40,12 +40,16 @@ def finite_positive(name: str, value: Any, unit: str) -> float:
     return given
 
 
+LARGEST = 200
+"""So many arcs may be asked for: the time of a correction grows with their cube."""
+
+
 def cut_as_it_grows(shooting: Shooting, guess: Arcs, arcs: int | None) -> Arcs:
     """Return guesses at equal times of the motion from the one that is given."""
     if arcs is None:
         arcs = min(MOST_ARCS, max(1, ceil(log(shooting.growth(guess)) / log(GROWTH))))
-    elif whole_number("arcs", arcs) < 1:
-        raise ValueError(f"arcs = {arcs}: must be >= 1")
+    elif not 1 <= whole_number("arcs", arcs) <= LARGEST:
+        raise ValueError(f"arcs = {arcs}: must be 1 to {LARGEST}")
     times = np.linspace(0.0, guess.period, arcs + 1)[:-1]
     sol = simulate(
         shooting.scene, (0.0, guess.period), *np.split(guess.states[0], 2),
@@ -92,6 +96,16 @@ def depends_on_time(scene: Scene, start: Floats, period: float) -> bool:
             "number of its periods (s)"
         )
     return True
+
+
+def require_free_joints(scene: Scene) -> None:
+    """Refuse locks."""
+    for i, effect in enumerate(scene.effects, 1):
+        if effect.kind == "lock":
+            raise ValueError(
+                f"scene: effect {i} (lock): the rate of a locked joint has no derivative: make one "
+                "link of the two that it joins"
+            )
 
 
 def require_same_after(scene: Scene, start: Floats, turns: Floats) -> None:

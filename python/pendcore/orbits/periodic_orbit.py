@@ -17,6 +17,7 @@ from pendcore.orbits.guess import (
     depends_on_time,
     finite_positive,
     first_return,
+    require_free_joints,
     require_same_after,
     states_given,
 )
@@ -169,8 +170,7 @@ class PeriodicOrbit:
         """
         value = self._value_of(name)
         (until,) = vector("until", until, 1, "")
-        if not step > 0:
-            raise ValueError(f"step = {step}: must be > 0")
+        step = finite_positive("step", step, "")
         if until == value:
             return (self,)
         shooting = replace(self._shooting, free=name, span=abs(until - value))
@@ -332,6 +332,7 @@ def periodic_orbit(
     (array([1, 1]), True)
     """
     require_scene(scene)
+    require_free_joints(scene)
     states, n = states_given(scene, q0, qd0), len(scene.links)
     start = states[0]
     if period is not None:
@@ -358,9 +359,9 @@ def periodic_orbit(
         end = shooting.runs(guess)[-1].q[-1]
         turned = np.rint((end - guess.states[0, :n]) / (2 * np.pi))
     else:
-        turned = np.array(
-            [whole_number("turns", x) for x in np.broadcast_to(turns, n).tolist()], float
-        )
+        if np.shape(turns) not in ((), (n,)):
+            raise ValueError(f"turns: shape {np.shape(turns)}: must be one number, or ({n},)")
+        turned = np.array([whole_number("turns", x) for x in np.broadcast_to(turns, n).tolist()])
     require_same_after(scene, start, turned)
     shooting = replace(shooting, turns=turned)
     try:
@@ -368,7 +369,7 @@ def periodic_orbit(
     except NotClosedError as failure:
         raise RuntimeError(
             f"no periodic orbit found near q0 = {np.round(start[:n], 6)}, period = {period:.6g}: "
-            f"{failure}; start closer, or with another period"
+            f"{failure}; start closer, with another period, or with guesses at m times, (m, {n})"
         ) from None
     found = closed.arcs.states[0]
     f = velocity(scene, 0.0, found) / shooting.scales

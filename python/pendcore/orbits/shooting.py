@@ -16,6 +16,7 @@ Source: Deuflhard, BIT 24 (1984) 456; Doedel et al., Int. J. Bifurcation Chaos 1
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
@@ -23,7 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pendcore import Scene, Solution, simulate
+from pendcore import PendcoreWarning, Scene, Solution, simulate
 from pendcore.messages import Floats
 
 TOLERANCES: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-16, "store": "end", "on_failure": "raise"}
@@ -162,10 +163,12 @@ class Shooting:
     def runs(self, arcs: Arcs, **asked: Any) -> list[Solution]:
         """Simulate each arc."""
         spans = pairwise(np.linspace(0.0, arcs.period, len(arcs.states) + 1))
-        return [
-            simulate(self.at(arcs.value), span, *np.split(start, 2), **{**TOLERANCES, **asked})
-            for start, span in zip(arcs.states, spans, strict=True)
-        ]
+        with warnings.catch_warnings():  # these are trials: what is wrong with one is told later
+            warnings.simplefilter("ignore", PendcoreWarning)
+            return [
+                simulate(self.at(arcs.value), span, *np.split(start, 2), **{**TOLERANCES, **asked})
+                for start, span in zip(arcs.states, spans, strict=True)
+            ]
 
     def growth(self, arcs: Arcs) -> float:
         """Return by how much a change of the state grows in an arc, at most and at any time."""
