@@ -55,6 +55,30 @@ def test_a_run_to_an_error_has_the_derivatives_of_its_own_steps() -> None:
         pc.simulate(BUMPY, (0, 1), 0.3, error=1e-8, sensitivities=["lnk[1].mass"])
 
 
+def test_xarray_has_them() -> None:
+    pytest.importorskip("xarray")
+    sol = pc.simulate(TEXTBOOK, **START)
+    data = sol.to_xarray()
+    by_gravity = data.sensitivities.sel(component="qd_2", by="gravity")
+    np.testing.assert_array_equal(by_gravity, sol.sensitivities[:, 3, 1])  # type: ignore[index]
+    assert "sensitivities" not in pc.simulate(TEXTBOOK, (0, 1), 0.3).to_xarray()
+
+
+def test_a_limit_of_time_leaves_the_derivatives_whole() -> None:
+    """The limit is that of the run to its error, which may take all of it."""
+    sol = pc.simulate(TEXTBOOK, **START | {"t_span": (0, 30)}, error=1e-6, time_limit=30)
+    assert sol.sensitivities is not None
+    assert len(sol.sensitivities) == len(sol.t)
+
+
+def test_an_end_at_an_impact_is_no_error() -> None:
+    stop = E.JointStop(joint=1, range=(-9, 1.2), restitution=0.6)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[stop])
+    hit = pc.events.LinkAngle(1, 1.2, terminal=True)
+    sol = pc.simulate(scene, (0, 0.8), 0.5, 1.0, sensitivities=["q0[1]"], events=[hit], rtol=1e-12)
+    assert sol.sensitivity_errors().max() < 1e-5
+
+
 def test_only_a_run_with_derivatives_has_their_error() -> None:
     with pytest.raises(ValueError, match="the run has no sensitivities"):
         pc.simulate(TEXTBOOK, (0, 1), 0.3).sensitivity_errors()

@@ -37,14 +37,18 @@ def to_xarray(solution: Solution) -> xr.Dataset:
     links = range(1, len(solution.scene.links) + 1)
     angle = {"units": "rad", "long_name": "absolute angle, from +x (right) towards +y (down)"}
     rate = {"units": "rad/s", "long_name": "angular rate"}
-    return xr.Dataset(
-        {
-            "q": (("time", "link"), solution.q.copy(), angle),
-            "qd": (("time", "link"), solution.qd.copy(), rate),
-        },
-        coords={"time": ("time", solution.t.copy(), {"units": "s"}), "link": list(links)},
-        attrs=_case(solution),
-    )
+    data: dict[str, Any] = {
+        "q": (("time", "link"), solution.q.copy(), angle),
+        "qd": (("time", "link"), solution.qd.copy(), rate),
+    }
+    coords: dict[str, Any] = {"time": ("time", solution.t.copy(), {"units": "s"})}
+    coords["link"] = list(links)
+    if solution.sensitivities is not None:  # with the axes of `pendcore.reducers.Sensitivities`
+        units = {"units": "rad, rad/s per unit of each name"}
+        data["sensitivities"] = (("time", "component", "by"), solution.sensitivities, units)
+        coords["component"] = [f"{name}_{i}" for name in ("q", "qd") for i in links]
+        coords["by"] = list(solution.sensitivity_names)
+    return xr.Dataset(data, coords=coords, attrs=_case(solution))
 
 
 def _case(solution: Solution) -> dict[Hashable, Any]:
