@@ -29,7 +29,7 @@ class Switching final : public Discontinuities {
   /// `accounts` are the accounts of the ledger, which the state has after angles and rates if the
   /// ledger is kept. The scene must outlive this object, and so must the watch, which may be null.
   Switching(const Scene& scene, const EquationsOfMotion& equations,
-            const std::vector<Account>& accounts, StepWatch* watch);
+            const std::vector<Account>& accounts, StepWatch* watch = nullptr);
   Switching(const Switching&) = delete;  // the impacts refer to the modes
   Switching& operator=(const Switching&) = delete;
 
