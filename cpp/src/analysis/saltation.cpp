@@ -93,7 +93,6 @@ std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
 }
 
 std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
-  const Vector before = View(change.before.data(), 2 * n_);
   const Vector f = equations_.rates(change.t, change.before.data());
   Vector f_after(2 * n_);
   f_after.head(n_) = View(change.after.data() + n_, n_);
