@@ -95,7 +95,9 @@ def drawn(seed: int) -> HybridCase:
                       t_end=between(0.5, 2.0), changes=changes)  # fmt: skip
 
 
-def by_complex_numbers(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
+def by_complex_numbers(
+    case: HybridCase, step: float
+) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
     """Return the state at the end, its derivative along all changes, and the events."""
     n = len(case.bodies)
     bodies: list[Any] = [list(body) for body in case.bodies]
@@ -139,7 +141,7 @@ def by_complex_numbers(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], li
     rig = Rig(bodies=[Body(*body) for body in bodies], gravity=gravity, effects=smooth,
               arithmetic=COMPLEX)  # fmt: skip
     run = HybridRun(rig=rig, friction=friction, stops=stops)
-    end = run.end(y, case.t_end)
+    end = run.end(y, case.t_end, step)
     return end.real, end.imag / LITTLE.imag, run.events
 
 

@@ -84,6 +84,7 @@ class HybridRun:
             with np.errstate(all="ignore"):  # beyond rest, Stribeck's law grows like an exponential
                 there = midpoint_rule(self.rates, t, y, h)
                 while not np.isfinite(there).all():
+                    assert h.real > 1e-9
                     h, is_last = h.real / 2, False
                     there = midpoint_rule(self.rates, t, y, h)
             roots = [
