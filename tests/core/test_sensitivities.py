@@ -8,7 +8,6 @@ Gragg's extrapolated midpoint rule, in steps that are far too short.
 from __future__ import annotations
 
 import pickle
-import re
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +16,9 @@ import pendcore as pc
 import pytest
 from described_scenes import scene_of
 from numpy.typing import NDArray
-from reference.arithmetic import COMPLEX
-from reference.complex_runs import LITTLE, midpoint_rule
-from reference.effects import Described, law
+from reference.complex_runs import LITTLE, Numbers, midpoint_rule
+from reference.effects import Described
 from reference.newton_euler import Body
-from reference.rig import Rig
 
 E = pc.effects
 TEXTBOOK = pc.Scene.textbook()
@@ -40,27 +37,9 @@ def exact(
     n: int, described: list[Described], y0: list[float], name: str, times: Any
 ) -> NDArray[np.float64]:
     """d(q, qd)/d(name) at some times, from the reference."""
-    described = [(kind, {k: dict(v) if isinstance(v, dict) else v for k, v in told.items()})
-                 for kind, told in described]  # fmt: skip
-    bodies = [list(body) for body in BODIES[:n]]
-    gravity: Any = 9.807
-    y: Any = np.array(y0, dtype=complex)
-    if name == "gravity":
-        gravity += LITTLE
-    elif start := re.fullmatch(r"(q0|qd0)\[(\d)\]", name):
-        y[int(start[2]) - 1 + n * (start[1] == "qd0")] += LITTLE
-    elif link := re.fullmatch(r"link\[(\d)\]\.(\w+)", name):
-        bodies[int(link[1]) - 1][Body._fields.index(link[2])] += LITTLE
-    else:
-        i, path = re.fullmatch(r"effect\[(\d)\]\.(.+)", name).groups()  # type: ignore[union-attr]
-        *parts, last = path.split(".")
-        owner: Any = described[int(i) - 1][1]
-        for part in parts:
-            owner = owner[part]
-        owner[last] = owner.get(last, 0.0) + LITTLE
-    made = [Body(*body) for body in bodies]
-    rig = Rig(bodies=made, gravity=gravity, effects=[law(one) for one in described],
-              arithmetic=COMPLEX)  # fmt: skip
+    numbers = Numbers(BODIES[:n], 9.807, described, y0)
+    numbers.move(name, LITTLE)
+    rig, y = numbers.rig(), numbers.y
 
     def rates(t: float, y: Any) -> Any:
         return np.array([*y[n:], *rig.motion(t, list(y[:n]), list(y[n:])).accelerations])

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from pendcore._run.call import run_again
 
 E = pc.effects
 TEXTBOOK = pc.Scene.textbook()
@@ -64,11 +65,20 @@ def test_xarray_has_them() -> None:
     assert "sensitivities" not in pc.simulate(TEXTBOOK, (0, 1), 0.3).to_xarray()
 
 
-def test_a_limit_of_time_leaves_the_derivatives_whole() -> None:
+def test_a_limit_of_time_leaves_the_derivatives_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit is that of the run to its error, which may take all of it."""
-    sol = pc.simulate(TEXTBOOK, **START | {"t_span": (0, 30)}, error=1e-6, time_limit=30)
+    limits = []
+
+    def noted(solution: pc.Solution, watch: Any, **changed: Any) -> pc.Solution:
+        limits.append(changed["time_limit"])
+        return run_again(solution, watch, **changed)
+
+    monkeypatch.setattr("pendcore._run.sensitivities.run_again", noted)
+    sol = pc.simulate(TEXTBOOK, **START, error=1e-6, time_limit=30)
     assert sol.sensitivities is not None
     assert len(sol.sensitivities) == len(sol.t)
+    sol.sensitivity_errors()
+    assert limits == [None, None]
 
 
 def test_an_end_at_an_impact_is_no_error() -> None:

@@ -12,11 +12,9 @@ import numpy as np
 import pendcore as pc
 from described_scenes import scene_of
 from numpy.typing import NDArray
-from reference.arithmetic import COMPLEX
-from reference.complex_runs import LITTLE, Friction, HybridRun, Range
-from reference.effects import Described, law
+from reference.complex_runs import LITTLE, Friction, HybridRun, Numbers, Range
+from reference.effects import Described
 from reference.newton_euler import Body
-from reference.rig import Rig
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,38 +97,18 @@ def by_complex_numbers(
     case: HybridCase, step: float
 ) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
     """Return the state at the end, its derivative along all changes, and the events."""
-    n = len(case.bodies)
-    bodies: list[Any] = [list(body) for body in case.bodies]
-    described: Any = [
-        (kind, {k: dict(v) if isinstance(v, dict) else v for k, v in told.items()})
-        for kind, told in case.described
-    ]
-    for _, told in described:
+    numbers = Numbers(case.bodies, case.gravity, case.described, [*case.q0, *case.qd0])
+    for _, told in numbers.described:
         if "range" in told:
             told["range"] = dict(zip(("lower", "upper"), told["range"], strict=True))
         if "coulomb" in told:
             told.setdefault("static", None)
-    gravity: Any = case.gravity
-    y: Any = np.array([*case.q0, *case.qd0], dtype=complex)
     for name, change in case.changes.items():
-        by = change * LITTLE
-        if name == "gravity":
-            gravity += by
-        elif start := re.fullmatch(r"(q0|qd0)\[(\d)\]", name):
-            y[int(start[2]) - 1 + n * (start[1] == "qd0")] += by
-        elif link := re.fullmatch(r"link\[(\d)\]\.(\w+)", name):
-            bodies[int(link[1]) - 1][Body._fields.index(link[2])] += by
-        else:
-            i, path = re.findall(r"effect\[(\d)\]\.(.+)", name)[0]
-            *parts, last = path.split(".")
-            owner: Any = described[int(i) - 1][1]
-            for part in parts:
-                owner = owner[part]
-            owner[last] = (owner.get(last) or 0.0) + by
+        numbers.move(name, change * LITTLE)
     friction, stops, smooth = {}, {}, []
-    for kind, told in described:
+    for kind, told in numbers.described:
         if kind not in {"dry_joint_friction", "joint_stop"}:
-            smooth.append(law((kind, told)))
+            smooth.append((kind, told))
             continue
         joint = told.pop("joint") - 1
         if kind == "joint_stop":
@@ -138,10 +116,8 @@ def by_complex_numbers(
         else:
             told["static"] = told["coulomb"] if told["static"] is None else told["static"]
             friction[joint] = Friction(**told)
-    rig = Rig(bodies=[Body(*body) for body in bodies], gravity=gravity, effects=smooth,
-              arithmetic=COMPLEX)  # fmt: skip
-    run = HybridRun(rig=rig, friction=friction, stops=stops)
-    end = run.end(y, case.t_end, step)
+    run = HybridRun(rig=numbers.rig(smooth), friction=friction, stops=stops)
+    end = run.end(numbers.y, case.t_end, step)
     return end.real, end.imag / LITTLE.imag, run.events
 
 

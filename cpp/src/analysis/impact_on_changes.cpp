@@ -16,27 +16,21 @@ ImpactOnChanges::ImpactOnChanges(const VariationalEquations& equations)
     : equations_(equations),
       n_(equations.links()),
       k_(static_cast<Eigen::Index>(equations.names().size())),
-      forces_(equations.scene(), locked_joints(equations.scene())) {
-  const std::vector<bool> locked = locked_joints(equations.scene());
-  for (int j = 0; j < n_; ++j) {
-    if (!locked[j]) forces_.joints.push_back(j);
-  }
-}
+      forces_(JointForces::on_free_joints(equations.scene(), locked_joints(equations.scene()))) {}
 
 /// The torques in the joints that a change of the mass matrix calls for, -d(M) x, a column for each
 /// name.
 Matrix ImpactOnChanges::torques_of_changed_mass(const Numbers& q, const Vector& x,
                                                 const Matrix& changes) {
-  Matrix on_links = Matrix::Zero(n_, k_);
+  Matrix torques = Matrix::Zero(n_, k_);  // first on links, then in joints
   for (int i = 0; i < n_; ++i) {
     for (int j = 0; j < n_; ++j) {
       if (i == j) continue;
       const double sine = forces_.sine[i] * forces_.cosine[j] - forces_.cosine[i] * forces_.sine[j];
-      on_links.row(i) +=
+      torques.row(i) +=
           forces_.inertia.coupling(i, j) * sine * x[j] * (changes.row(i) - changes.row(j));
     }
   }
-  Matrix torques = on_links;
   for (int j = n_ - 1; j-- > 0;) torques.row(j) += torques.row(j + 1);
   const Vector rest = Vector::Zero(n_);
   for (std::size_t p = 0; p < equations_.parameters().size(); ++p) {

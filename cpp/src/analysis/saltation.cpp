@@ -231,10 +231,9 @@ std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedCh
     if (!slope) return std::nullopt;
     found.by_name[column] = sign * *slope;
   }
-  const std::vector<NamedNumber> all = parameters(scene);
   for (const auto& parameter : equations_.parameters()) {
     const ParameterChoice choice(scene, {parameter.name});
-    const double value = std::ranges::find(all, parameter.name, &NamedNumber::name)->value;
+    const double value = parameter.value;
     const auto changed = [&](double h) {
       Scene there = scene;
       choice.set(there, std::vector{value + h});

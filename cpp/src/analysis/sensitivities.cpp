@@ -55,8 +55,8 @@ struct Sensitivities::Variation {
   int points_at_once = 8;
   bool has_points_to_spare = false;
   std::vector<double> thetas{}, states{}, decay{};
-  Vector floor{};      ///< what rounding alone makes of d qdd/d p, (k)
-  int parts_left = 0;  ///< into which the step may still be cut
+  Vector floor{};     ///< what rounding alone makes of d qdd/d p, (k)
+  int cuts_left = 0;  ///< into which the step may still be cut
   Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
   bool has_started = false;
@@ -158,7 +158,7 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
       return advance(step, from, to, halvings);
     }
     const double middle = 0.5 * (from + to);
-    if (halvings == most_halvings_of_step || --parts_left < 0 || middle == from || middle == to) {
+    if (halvings == most_halvings_of_step || --cuts_left < 0 || middle == from || middle == to) {
       refuse_from(t_start + from * step.h,
                   "the motion has a corner there, or grows beyond numbers");
       return;
@@ -188,7 +188,7 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
 
 void Sensitivities::Variation::take(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
-  parts_left = most_cuts_of_step;
+  cuts_left = most_cuts_of_step;
   // A time that is kept is the end of a part: there, the order is highest.
   double from = 0.0;
   for (; std::isfinite(next_share(step)); ++next_time) {

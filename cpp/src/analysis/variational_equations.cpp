@@ -156,10 +156,7 @@ void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, boo
 void VariationalEquations::put_along(double t, bool forward) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
-  forces_.emplace(scene_, held);
-  for (int j = 0; j < n_; ++j) {
-    if (!held[j]) forces_->joints.push_back(j);
-  }
+  forces_ = JointForces::on_free_joints(scene_, held);
   mechanisms_ = mechanisms_along(scene_, modes_, t, forward, names_of_parameters_);
 }
 

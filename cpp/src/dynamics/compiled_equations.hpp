@@ -24,13 +24,7 @@ struct Equations::Compiled {
 
   /// The joints that no Lock holds, for their responses to torques.
   JointForces& free_joints() {
-    if (!responses) {
-      const std::vector<bool> locked = locked_joints(scene);
-      responses.emplace(scene, locked);
-      for (std::size_t j = 0; j < locked.size(); ++j) {
-        if (!locked[j]) responses->joints.push_back(static_cast<int>(j));
-      }
-    }
+    if (!responses) responses = JointForces::on_free_joints(scene, locked_joints(scene));
     return *responses;
   }
 

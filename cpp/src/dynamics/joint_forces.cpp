@@ -19,6 +19,14 @@ JointForces::JointForces(const Scene& scene, const std::vector<bool>& rigid)
   bodies_ = body + 1;
 }
 
+JointForces JointForces::on_free_joints(const Scene& scene, const std::vector<bool>& held) {
+  JointForces forces(scene, held);
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    if (!held[j]) forces.joints.push_back(static_cast<int>(j));
+  }
+  return forces;
+}
+
 void JointForces::set_mass_matrix(const double* q) {
   const std::size_t n = inertia.links.size();
   sine.resize(n);

@@ -26,6 +26,9 @@ struct JointForces {
   /// `rigid` says of each joint whether it never turns; if it is empty, all joints do.
   JointForces(const Scene& scene, const std::vector<bool>& rigid);
 
+  /// On every joint that turns, where `held` ones are rigid.
+  static JointForces on_free_joints(const Scene& scene, const std::vector<bool>& held);
+
   /// M_ij = A_ij cos(q_i - q_j), and the rotors (inertia.hpp). Cost: O(n^2).
   void set_mass_matrix(const double* q);
   /// Factors M, for respond() alone.

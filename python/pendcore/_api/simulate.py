@@ -152,7 +152,7 @@ def _find_sensitivities(solution: Solution, names: tuple[str, ...]) -> None:
     from pendcore._run.sensitivities import derivatives_of
 
     try:  # what was promised of the run's time is kept already
-        watch, _ = derivatives_of(solution, names, time_limit=float("inf"))
+        watch, _ = derivatives_of(solution, names)
     except BaseException as stop:
         hand_over(stop, solution=solution)
         raise

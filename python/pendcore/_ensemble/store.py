@@ -45,7 +45,7 @@ class Store:
     members: Members
     request: Request
     blocks: Blocks
-    """What is run, and how it is cut."""
+    """What was asked for, and into which blocks its members are cut."""
     zarr_arrays: dict[str, Any]
     """The arrays of the result, the status first."""
     folder: os.stat_result

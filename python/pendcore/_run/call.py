@@ -71,6 +71,15 @@ def run(
     return completed(Solution(scene, run), report)
 
 
+def run_again(solution: Solution, watch: _core.Watch | None = None, **changed: Any) -> Solution:
+    """Simulate a run from its start as it was, but for some of its arguments."""
+    asked = solution._run.arguments | changed
+    q0, qd0, t_start, t_end = (asked.pop(name) for name in ("q0", "qd0", "t_start", "t_end"))
+    choice = Choice(*(asked.pop(name) for name in Choice._fields))
+    start = Start(solution.scene, q0, qd0, t_start, t_end)
+    return run(start, choice, progress=None, watch=watch, **asked)
+
+
 def resumed(
     result: Solution,
     t_end: float,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.handed_over import forget_inner_runs
-from pendcore._run.call import Choice, Start, resumed, run
+from pendcore._run.call import resumed, run_again
 from pendcore._run.solution import Solution
 
 MOST_BYTES = 2**31
@@ -36,27 +36,24 @@ def with_dense_output(solution: Solution) -> Solution:
 
 def _simulated_anew(solution: Solution) -> Solution:
     """Return the run as far as it came, whatever ended it."""
-    asked = solution._run.arguments
-    if solution._run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
-        asked |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
-    q0, qd0, t_start, t_end = (asked.pop(name) for name in ("q0", "qd0", "t_start", "t_end"))
-    start = Start(solution.scene, q0, qd0, t_start, t_end)
     whole = _attempts(solution)
     # A run that came to its end goes beyond its last attempt where everything rests. A run that
     # was broken off had begun another attempt, which is not repeated.
     most = whole + 1 if solution.success else max(whole, 1)
-    options = asked | {"store": "dense", "max_steps": most, "time_limit": None}
-    choice = Choice(*(options.pop(name) for name in Choice._fields))
+    changed = {"store": "dense", "max_steps": most, "time_limit": None}
+    asked = solution._run.arguments
+    if solution._run.t_reached == asked["t_start"]:  # it took no step, and none is to be taken
+        changed |= {"t_end": asked["t_start"], "t_eval": solution.t if len(solution.t) else None}
     names = solution.sensitivity_names
     watch = _core.Sensitivities(solution.scene._compiled, list(names)) if names else None
-    again = run(start, choice, progress=None, watch=watch, **options)
+    again = run_again(solution, watch, **changed)
     again.name = solution.name
     if watch is not None:
         again.sensitivities, again.sensitivity_names = watch.values, names
     # A run that was resumed has passed events that end a run.
     while again.status == "event" and again._run.t_reached != solution._run.t_reached:
         most = max(whole + solution.success - _attempts(again), 1)
-        again = resumed(again, start.t_end, max_steps=most)
+        again = resumed(again, again._run.arguments["t_end"], max_steps=most)
     return again
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from pendcore import _core
 from pendcore._messages.arguments import Floats
-from pendcore._run.call import Choice, Start, run
+from pendcore._run.call import run_again
 from pendcore._run.solution import Solution
 
 TIGHTEST = 1e-12
@@ -18,12 +18,9 @@ TIGHTEST = 1e-12
 def derivatives_of(
     solution: Solution, names: tuple[str, ...], **changed: Any
 ) -> tuple[_core.Sensitivities, Solution]:
-    """Simulate a run anew, some options changed, and return what looked on beside the run."""
-    asked = solution._run.arguments | changed
-    q0, qd0, t_start, t_end = (asked.pop(name) for name in ("q0", "qd0", "t_start", "t_end"))
-    choice = Choice(*(asked.pop(name) for name in Choice._fields))
+    """Simulate a run anew, some arguments changed, and return what looked on beside the run."""
     watch = _core.Sensitivities(solution.scene._compiled, list(names))
-    return watch, run(Start(solution.scene, q0, qd0, t_start, t_end), choice, watch=watch, **asked)
+    return watch, run_again(solution, watch, **changed | {"time_limit": None})
 
 
 def errors_of(solution: Solution) -> Floats:
@@ -34,31 +31,44 @@ def errors_of(solution: Solution) -> Floats:
         )
     if not len(solution.t):
         return np.empty((0, len(solution.sensitivity_names)))
-    asked = solution._run.arguments
-    share = 0.1 if np.min(asked["rtol"]) >= TIGHTEST else 10.0
-    closer: dict[str, Any] = {name: asked[name] * share for name in ("rtol", "atol")}
-    if asked["step"] is not None:
-        closer = {"step": asked["step"] / 2}
-    backward = solution.t[-1] < solution.t[0]
-    times, places = np.unique(-solution.t if backward else solution.t, return_inverse=True)
-    if backward:
-        times = -times
-    # The other run has an event a little earlier or later: at its very time, one of the two is
-    # before it. There, the error is that of the times around; at the end, that of
-    # the moment whose state is nearest.
-    last, since = times[-1], times[-2] if len(times) > 1 else asked["t_start"]
-    moment = min(1e-7 * abs(last - asked["t_start"]), 0.5 * abs(last - since))
-    around = last + np.sign(asked["t_end"] - asked["t_start"]) * moment * np.array([-1, 0, 1])
-    grid = [*times[:-1], *(around if moment > 0 else [last])]
-    t_end = grid[-1] if moment > 0 else asked["t_end"]
-    more: dict[str, Any] = {"t_eval": grid, "store": None, "t_end": t_end, "events": ()}
-    more |= {"max_steps": 10**9, "time_limit": float("inf")}
-    watch, other = derivatives_of(solution, solution.sensitivity_names, **closer, **more)
-    latest = np.append(np.flatnonzero(np.diff(places)), len(places) - 1)  # after a jump
+    times, places = np.unique(solution.t, return_inverse=True)
+    if solution.t[-1] < solution.t[0]:  # as the run goes: backward
+        times, places = times[::-1], len(times) - 1 - places
+    grid = _with_moments_around_the_end(times, solution._run.arguments["t_start"])
+    watch, other = derivatives_of(
+        solution, solution.sensitivity_names, **_more_exact(solution._run.arguments),
+        t_eval=grid, store=None, t_end=grid[-1], events=(), max_steps=10**9,
+    )  # fmt: skip
     rows = np.arange(len(times))
-    distances = np.abs(other.y[:, len(times) - 1 :].T - solution.y[:, -1]).max(axis=1)
-    middle = min(1, len(distances) - 1)  # a table may end there
-    rows[-1] += middle if distances[middle] < 100 * distances.min() else distances.argmin()
+    rows[-1] += _of_the_nearest_state(solution.y[:, -1], other.y[:, len(times) - 1 :])
+    latest = np.append(np.flatnonzero(np.diff(places)), len(places) - 1)  # after a jump
     errors: Floats = np.abs(solution.sensitivities[latest] - watch.values[rows]).max(axis=1)
+    # The other run has an event a little earlier or later: at its very time, one of the two is
+    # before it. There, the error is that of the times around.
     errors[1:-1] = np.minimum(errors[1:-1], np.maximum(errors[:-2], errors[2:]))
     return errors[places]
+
+
+def _more_exact(asked: dict[str, Any]) -> dict[str, Any]:
+    """Return tolerances or a step that tell how far off a run is."""
+    if asked["step"] is not None:
+        return {"step": asked["step"] / 2}
+    share = 0.1 if np.min(asked["rtol"]) >= TIGHTEST else 10.0
+    return {name: asked[name] * share for name in ("rtol", "atol")}
+
+
+def _with_moments_around_the_end(times: Floats, t_start: float) -> list[float]:
+    """Return times with one just before the last of them, and one just after it."""
+    last, since = times[-1], times[-2] if len(times) > 1 else t_start
+    moment = np.copysign(min(1e-7 * abs(last - t_start), 0.5 * abs(last - since)), last - t_start)
+    return [*times[:-1], *([last - moment, last, last + moment] if moment else [last])]
+
+
+def _of_the_nearest_state(end: Floats, found: Floats) -> int:
+    """Return which of the moments is on the same side of an event; the middle one, if none is.
+
+    A table may end in the middle, so that there is no moment after it.
+    """
+    distances = np.abs(found.T - end).max(axis=1)
+    middle = min(1, len(distances) - 1)
+    return middle if distances[middle] < 100 * distances.min() else int(distances.argmin())

@@ -39,7 +39,7 @@ class Connection:
     angle : float
         Between the manifolds in the section, rad, rates as in ``error``: 0 where they touch.
     phases : (float, float)
-        Of the motions along the unstable and along the stable manifold.
+        Where its two halves begin: the phases of the unstable and of the stable manifold.
     leaving, arriving : Solution
         From near the first orbit to the section, and from near the second, backward; both with
         dense output.
@@ -96,7 +96,7 @@ def connections(
     Parameters
     ----------
     unstable, stable : Manifold
-        Of two orbits, or of one: then they are homoclinic, else heteroclinic.
+        They belong to one orbit, and the connections are homoclinic, or to two: heteroclinic.
     count : int
         How many motions of each draw its curve.
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from pendcore import Scene
 from pendcore.explanation.equilibria import FreeAngles
 from pendcore.messages import Floats, require_scene, vector, whole_number
+from pendcore.orbits.multipliers import Complexes
 from pendcore.orbits.periodic_orbit import PeriodicOrbit, periodic_orbit
 from pendcore.orbits.shooting import GROWTH, total_energy
 
@@ -20,7 +21,6 @@ MOST_LINKS = 10
 _NOISE = 1e-7
 """The real part that counts as zero, as a share of the largest eigenvalue, where there is damping;
 without it the eigenvalues are roots of real numbers, and exact."""
-Complexes = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -103,10 +103,11 @@ class Equilibrium:
         Parameters
         ----------
         mode : int
-            Of ``frequencies``, from 1, the slowest.
+            Which of ``frequencies`` it has: 1 is the slowest.
         amplitude : float
-            Of the angle that swings most, rad, in the linear motion; the orbit has the energy that
-            the scene has there, at rest. Begin small, and let `PeriodicOrbit.continued` go on.
+            How far the angle that swings most would swing, rad, in the linear motion; the orbit has
+            the energy that the scene has there, at rest. Begin small, and let
+            `PeriodicOrbit.continued` go on.
 
         Raises
         ------

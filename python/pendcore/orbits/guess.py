@@ -40,7 +40,7 @@ def finite_positive(name: str, value: Any, unit: str) -> float:
     return given
 
 
-LARGEST = 200
+MOST_GIVEN = 200
 """So many arcs may be asked for: the time of a correction grows with their cube."""
 
 
@@ -48,8 +48,8 @@ def cut_as_it_grows(shooting: Shooting, guess: Arcs, arcs: int | None) -> Arcs:
     """Return guesses at equal times of the motion from the one that is given."""
     if arcs is None:
         arcs = min(MOST_ARCS, max(1, ceil(log(shooting.growth(guess)) / log(GROWTH))))
-    elif not 1 <= whole_number("arcs", arcs) <= LARGEST:
-        raise ValueError(f"arcs = {arcs}: must be 1 to {LARGEST}")
+    elif not 1 <= whole_number("arcs", arcs) <= MOST_GIVEN:
+        raise ValueError(f"arcs = {arcs}: must be 1 to {MOST_GIVEN}")
     times = np.linspace(0.0, guess.period, arcs + 1)[:-1]
     sol = simulate(
         shooting.scene, (0.0, guess.period), *np.split(guess.states[0], 2),

@@ -22,7 +22,7 @@ from pendcore.orbits.guess import (
     states_given,
 )
 from pendcore.orbits.manifold import Manifold
-from pendcore.orbits.multipliers import direction, multipliers, product
+from pendcore.orbits.multipliers import Complexes, direction, multipliers, product
 from pendcore.orbits.shooting import (
     Arcs,
     Closed,
@@ -34,7 +34,6 @@ from pendcore.orbits.shooting import (
 
 KEEP_ENERGY = {"torsional_spring", "rotor_inertia", "payload"}
 """The effects beside which the energy is kept."""
-Complexes = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
