@@ -23,7 +23,9 @@ struct Dual {
   Row value;
   // GCC reports the alignment of a pack beside a number as on the baseline, and its clones rely on
   // the true one.
-  alignas(std::is_same_v<Row, Along> ? alignof(Along) : sizeof(Along)) Along slope;
+  alignas(std::is_same_v<Row, Along> ? alignof(Along)
+          : sizeof(Along) < 64       ? sizeof(Along)
+                                     : 64) Along slope;
 
   Dual() = default;
   PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
@@ -114,6 +116,15 @@ struct Constants<Dual<Row, Along>> {
   PENDCORE_INLINE static Dual<Row, Along> of(const Dual<Row, Along>& x) { return x; }
 };
 
+template <class Along>
+PENDCORE_INLINE double value_of(const Dual<double, Along>& x) {
+  return x.value;
+}
+template <class Row, class Along>
+bool is_zero(const Dual<Row, Along>& x) {
+  return is_zero(x.value) && is_zero(x.slope);
+}
+
 /// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
 template <class DualRow>
   requires requires(DualRow x) { x.slope; }
@@ -134,16 +145,16 @@ PENDCORE_INLINE void store(Dual<double>* to, const Dual<Row>& x) {
   for (int i = 0; i < Lanes<Row>::width; ++i) to[i] = {lane(x.value, i), lane(x.slope, i)};
 }
 
-template <class Row>
-PENDCORE_INLINE Dual<Row> other(const Dual<Row>& x) {
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> other(const Dual<Row, Along>& x) {
   return {other(x.value), other(x.slope)};
 }
-template <class Row>
-PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x) {
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> before(const Dual<Row, Along>& x) {
   return {before(x.value), before(x.slope)};
 }
-template <class Row>
-PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x) {
+template <class Row, class Along>
+PENDCORE_INLINE Dual<Row, Along> after(const Dual<Row, Along>& x) {
   return {after(x.value), after(x.slope)};
 }
 template <class Row>

@@ -3,7 +3,10 @@
 /// row_of_links.hpp on dual rows.
 #pragma once
 
+#include <utility>
+
 #include "arithmetic/dual.hpp"
+#include "arithmetic/row_of_pairs.hpp"
 
 namespace pendcore {
 
@@ -14,14 +17,21 @@ struct RowOfLinks<Dual<double>, links> {
 };
 }  // namespace row_detail
 
-PENDCORE_INLINE Dual<Pairs> joined(const Dual<Pair>& low, const Dual<Pair>& high) {
+template <class Low>
+using Joined = decltype(joined(std::declval<Low>(), std::declval<Low>()));
+
+template <class Along>
+PENDCORE_INLINE Dual<Pairs, Joined<Along>> joined(const Dual<Pair, Along>& low,
+                                                  const Dual<Pair, Along>& high) {
   return {joined(low.value, high.value), joined(low.slope, high.slope)};
 }
-PENDCORE_INLINE Dual<Pair> low_half(const Dual<Pairs>& x) {
-  return {low_half(x.value), low_half(x.slope)};
+template <class Along>
+PENDCORE_INLINE auto low_half(const Dual<Pairs, Along>& x) {
+  return Dual<Pair, decltype(low_half(x.slope))>(low_half(x.value), low_half(x.slope));
 }
-PENDCORE_INLINE Dual<Pair> high_half(const Dual<Pairs>& x) {
-  return {high_half(x.value), high_half(x.slope)};
+template <class Along>
+PENDCORE_INLINE auto high_half(const Dual<Pairs, Along>& x) {
+  return Dual<Pair, decltype(high_half(x.slope))>(high_half(x.value), high_half(x.slope));
 }
 PENDCORE_INLINE Dual<Pairs> twice(const Dual<Pair>& x) { return {twice(x.value), twice(x.slope)}; }
 PENDCORE_INLINE Dual<Pairs> halves_added(const Dual<Pairs>& x) {
@@ -29,6 +39,40 @@ PENDCORE_INLINE Dual<Pairs> halves_added(const Dual<Pairs>& x) {
 }
 PENDCORE_INLINE Dual<Pairs> turned(const Dual<Pairs>& x) {
   return {turned(x.value), turned(x.slope)};
+}
+
+// A pair with slopes along several directions: the values are one pack, and the slopes of each
+// number another one.
+
+template <class Slopes>
+using PairAlong = Dual<Pair, Two<Slopes>>;
+namespace pair_detail {
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 1)
+struct PairOf<Dual<double, Slopes>> {
+  using Type = PairAlong<Slopes>;
+};
+}  // namespace pair_detail
+
+template <class Slopes>
+PENDCORE_INLINE PairAlong<Slopes> pair_of(const Dual<double, Slopes>& first,
+                                          const Dual<double, Slopes>& second) {
+  return {Pair{first.value, second.value}, {first.slope, second.slope}};
+}
+template <class Slopes>
+PENDCORE_INLINE Dual<double, Slopes> number_of(const PairAlong<Slopes>& x, int k) {
+  return {x.value[k], number_of(x.slope, k)};
+}
+template <class Slopes>
+PENDCORE_INLINE void set_number(PairAlong<Slopes>& x, int k, const Dual<double, Slopes>& number) {
+  set_number(x.value, k, number.value);
+  set_number(x.slope, k, number.slope);
+}
+/// A number times both numbers of a pair.
+template <class Slopes>
+PENDCORE_INLINE PairAlong<Slopes> fma(const Dual<double, Slopes>& a, const PairAlong<Slopes>& b,
+                                      const PairAlong<Slopes>& c) {
+  return fma(pair_of(a, a), b, c);
 }
 
 PENDCORE_INLINE Dual<double> number_of(const Dual<Pack<4>>& row, int i) {

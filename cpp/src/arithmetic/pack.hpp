@@ -102,6 +102,17 @@ PENDCORE_INLINE void set_lane(Real& x, int index, double value) {
   }
 }
 
+PENDCORE_INLINE double value_of(double x) { return x; }
+
+/// Whether all its numbers are zero.
+template <class Real>
+bool is_zero(const Real& x) {
+  for (int i = 0; i < Lanes<Real>::width; ++i) {
+    if (lane(x, i) != 0.0) return false;
+  }
+  return true;
+}
+
 /// Loads a pack from consecutive numbers in memory, or stores it; any alignment. A pack that is
 /// loaded soon is best stored as that pack: a processor waits until numbers that were stored one by
 /// one, or as parts of other packs, are in memory.

@@ -217,9 +217,9 @@ struct DoublePendulumOrders {
   Row pulls[highest_order];  ///< in order 0 with the weight
 
   /// Computes order 0.
-  template <class TorqueOrders>
-  PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Constant>& constants,
-                                       const Number* y, const Constant& sigma, TorqueOrders& torque,
+  template <class OfLinks, class TorqueOrders>
+  PENDCORE_INLINE DoublePendulumOrders(const OfLinks& constants, const Number* y,
+                                       const Constant& sigma, TorqueOrders& torque,
                                        Number* coefficients, Last& last);
   /// Computes order k >= 1 from its sums (terms_by_age.hpp).
   template <class TorqueOrders>
@@ -232,10 +232,10 @@ struct DoublePendulumOrders {
 };
 
 template <class Number>
-template <class TorqueOrders>
+template <class OfLinks, class TorqueOrders>
 PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
-    const ConstantsOfDoublePendulum<Constant>& constants, const Number* y, const Constant& sigma,
-    TorqueOrders& torque, Number* coefficients, Last& last) {
+    const OfLinks& constants, const Number* y, const Constant& sigma, TorqueOrders& torque,
+    Number* coefficients, Last& last) {
   auto& [angle, alpha, beta_x, beta_y, pull_x] = last;
   per_sigma = inverse_of_power_of_two(sigma);
   angle = Of::pair_at(y);
@@ -307,6 +307,11 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   pulls[k] = joined(pull_x, fma(pull_cosine, y, pull_sine * x));
 }
 
+/// Whether a series is bound by how long an order waits for the one before, and not by the number
+/// of its operations.
+template <class Number>
+inline constexpr bool is_bound_by_waiting = Lanes<Number>::width == 1;
+
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
 /// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the
 /// other: the sums of a whole row would not fit into the registers.
@@ -345,17 +350,18 @@ PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<Number>& orders, const A
 }
 
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
-/// in units of sigma. `torque` gives the series of the torques.
-template <class Number, class TorqueOrders>
-PENDCORE_INLINE void expand_double_pendulum(
-    const ConstantsOfDoublePendulum<ConstantOf<Number>>& constants, const Number* y,
-    const ConstantOf<Number>& sigma, int order, TorqueOrders& torque, Number* coefficients) {
+/// in units of sigma. `constants` are ConstantsOfDoublePendulum of numbers or of their constants;
+/// `torque` gives the series of the torques.
+template <class Number, class OfLinks, class TorqueOrders>
+PENDCORE_INLINE void expand_double_pendulum(const OfLinks& constants, const Number* y,
+                                            const ConstantOf<Number>& sigma, int order,
+                                            TorqueOrders& torque, Number* coefficients) {
   using Orders = DoublePendulumOrders<Number>;
   using Row = typename Orders::Row;
   typename Orders::Last last;
   Orders orders(constants, y, sigma, torque, coefficients, last);
   orders.next(1, Row{}, Row{}, torque, coefficients, last);
-  expand_by_two<Row, (Lanes<Number>::width == 1)>(
+  expand_by_two<Row, is_bound_by_waiting<Number>>(
       order, [&](const auto& add) __attribute__((always_inline)) { return sums_of(orders, add); },
       [&](std::ptrdiff_t k, const Row& along, const Row& across) __attribute__((always_inline)) {
         orders.next(k, along, across, torque, coefficients, last);
