@@ -16,8 +16,8 @@
 
 namespace pendcore {
 
-/// Computes the series from y at time t in units of sigma. It is a kernel of its own, so that it
-/// can be compiled by other options than the steps (CMakeLists.txt).
+/// Computes the series from y at time t in units of sigma. It is a kernel of its own, which a step
+/// calls.
 template <template <class> class Form, int width>
 PENDCORE_INLINE void expand_in_lanes(const Form<Pack<width>>* equations, const Pack<width>* t,
                                      const Pack<width>* y, const Pack<width>* sigma, int order,
@@ -26,10 +26,6 @@ PENDCORE_INLINE void expand_in_lanes(const Form<Pack<width>>* equations, const P
 }
 template <template <class> class Form, int width>
 using ExpandKernel = decltype(&expand_in_lanes<Form, width>);
-template <template <class> class Form, InstructionSet set>
-ExpandKernel<Form, width_on(set)> expand_kernel_on() {
-  return only<&expand_in_lanes<Form, width_on(set)>, set>();
-}
 
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
