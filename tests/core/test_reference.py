@@ -6,12 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from reference import chain, dormand_prince
+from reference import dormand_prince
 from reference.arithmetic import Number, multiple_precision
 from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
 from reference.order_conditions import order_of, trees
 from reference.rig import Rig
-from reference.trajectories import Trajectory, names, trajectory
 
 pytestmark = pytest.mark.unsanitized
 
@@ -85,42 +84,3 @@ def test_the_tableau_has_order_five_and_four() -> None:
     assert order_of(dormand_prince.A, dormand_prince.B) == 5
     assert order_of(dormand_prince.A, dormand_prince.B_FOURTH_ORDER) == 4
     assert [sum(row) for row in dormand_prince.A] == dormand_prince.C
-
-
-# The largest error of an angle at rtol = atol = 1e-10: how sensitive each motion is.
-BOUNDS = {
-    "textbook": 2e-9,
-    "textbook_long": 2e-7,
-    "horizontal_rest": 1e-7,
-    "high_energy": 1e-2,
-    "unequal": 2e-6,
-    "heavy_tip": 3e-10,
-    "light_tip": 2e-9,
-    "fast_spin": 3e-7,
-    "no_gravity": 2e-8,
-    "single_rod": 2e-7,
-    "damped_textbook": 5e-10,
-    "three_links": 1e-8,
-    "ten_links": 5e-9,
-}
-
-
-def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince.Run:
-    return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance)
-
-
-@pytest.mark.few_cases
-@pytest.mark.parametrize("name", names())
-def test_trajectories_follow_the_multiple_precision_ones(name: str) -> None:
-    case = trajectory(name)
-    run = simulate(case, float(case.t[-1]), 1e-10)
-    q = np.array([run(t)[: len(case.q0)] for t in case.t])
-    assert np.abs(q - case.q).max() < BOUNDS[name]
-
-
-def test_a_backward_run_mirrors_a_forward_one() -> None:
-    case = trajectory("textbook")
-    there, back = (simulate(case, sign * float(case.t[-1]), 1e-8) for sign in (1, -1))
-    np.testing.assert_array_equal(np.array(there.t), -np.array(back.t))
-    np.testing.assert_array_equal(np.array(there.y)[:, :2], np.array(back.y)[:, :2])
-    np.testing.assert_array_equal(there(1.234)[:2], back(-1.234)[:2])

@@ -377,16 +377,3 @@ def test_a_fork_may_simulate_too():
         os._exit(0)
     os.waitpid(child, 0)
     assert os.read(reader, 32) == here.tobytes()
-
-
-@pytest.mark.parametrize("method", [one["name"] for one in pc._core.methods()])
-def test_backward_is_the_mirror_of_forward(method):
-    how = {"method": method} | ({} if method != "rk4" else {"step": 0.01})
-    book, times = pc.Scene.textbook(), np.linspace(0, 10, 33)
-    there, back = (
-        pc.simulate(book, (0, s * 10), [0.3, 1.1], [s * 2.0, -s], **how) for s in (1, -1)
-    )
-    assert np.array_equal(back.t, -there.t)
-    assert np.array_equal(back.q, there.q)
-    assert np.array_equal(back.qd, -there.qd)
-    assert np.array_equal(back(-times)[:2], there(times)[:2])
