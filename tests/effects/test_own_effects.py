@@ -253,20 +253,6 @@ def test_a_compiled_function_is_kept_alive_through_replace():
     assert varied.data == 5
 
 
-def test_threads_share_a_scene_with_a_function():
-    shared, results = scene(fx.User(damp)), []
-    threads = [
-        threading.Thread(target=lambda: results.append(pc.simulate(shared, **START).y))
-        for _ in range(3)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(results) == 3
-    assert all(np.array_equal(y, results[0]) for y in results)
-
-
 @pytest.mark.parametrize("effect", [fx.User(damp), fx.CompiledUser(compiled_damp)], ids=["py", "c"])
 def test_what_cannot_be_kept_says_so_by_name(effect, tmp_path):
     own, name = scene(effect), type(effect).__name__
