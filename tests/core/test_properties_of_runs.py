@@ -1,23 +1,17 @@
-"""Any run at all is bounded, what it reached is finite, and it says how it ended.
+"""Ordinary runs, drawn by hypothesis: watched or not they are the same, by any method alike.
 
-The claims are those of `fuzz.claims`. Here hypothesis looks for a run that breaks one, and makes it
-small. It tries the same runs each time, because `make campaign OF=fuzz` looks further and survives
-a crash.
+What any run at all keeps, python_api/test_fuzz.py has.
 """
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
-import pendcore as pc
 import pytest
-from drawn_motions import any_runs, motions, stopped_motions
-from fuzz.choices import FromHypothesis
-from fuzz.claims import ALWAYS, SOMETIMES, Claim
+from drawn_motions import motions, stopped_motions
 from fuzz.drawn_run import Drawn
-from hypothesis import assume, given, reject, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from pendcore import _core
 from sweeps import random_examples
@@ -25,30 +19,6 @@ from sweeps import random_examples
 METHODS = [method["name"] for method in _core.methods() if method["error_order"]]
 
 pytestmark = pytest.mark.filterwarnings("ignore::pendcore.PendcoreWarning")
-
-
-@pytest.mark.few_cases
-@pytest.mark.parametrize("claim", [*ALWAYS, *SOMETIMES], ids=lambda claim: claim.__name__)
-@settings(derandomize=True, max_examples=random_examples(60))
-@given(run=any_runs(), data=st.data())
-def test_any_run_keeps_the_claims(claim: Claim, run: Drawn, data: st.DataObject) -> None:
-    """A user's function may raise; the exception then brings the solution so far."""
-    try:
-        sol = run.simulate()
-    except Exception as raised:
-        if not hasattr(raised, "solution"):
-            reject()
-        sol = raised.solution
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        warnings.simplefilter("ignore", pc.PendcoreWarning)
-        try:
-            breaches = list(claim(run, sol, FromHypothesis(data.draw)))
-        except Exception as raised:
-            if not hasattr(raised, "solution"):
-                raise
-            breaches = []
-    assert not breaches
 
 
 @given(
