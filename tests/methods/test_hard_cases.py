@@ -15,10 +15,11 @@ import pendcore as pc
 import pytest
 from dense_chain import DenseChain
 from hybrid_chain import extrapolated_step
-from mpmath import ellipf, ellipk, mp, mpf
+from mpmath import mp, mpf
 from pendcore import _core
 from pendcore import effects as fx
 from pendcore import events as ev
+from swings import period_of, time_to
 from unit_rods import rod
 
 BOOK = pc.Scene.textbook()
@@ -178,9 +179,7 @@ def time_of_fall(links):
     with mp.workdps(25):
         off = mpf(NEARLY_UPRIGHT) + mp.pi / 2
         if links == 1:
-            k = mp.cos(off / 2)
-            to_go = ellipk(k**2) - ellipf(mp.asin(mp.cos((off + 1) / 2) / k), k**2)
-            return float(to_go * mp.sqrt(2 / (3 * mpf(BOOK.gravity))))
+            return float(time_to(mp.pi - off - 1, mp.pi - off, BOOK.gravity))
     chain = DenseChain(masses=np.ones(2), lengths=np.ones(2), gravity=BOOK.gravity)
 
     def rates(_, y):
@@ -257,10 +256,9 @@ def test_the_units_do_not_matter(scale):
 
 
 def test_a_swing_next_to_the_separatrix_takes_the_time_of_the_elliptic_integral():
-    modulus = 0.999999
-    start = np.pi / 2 - 2 * np.arcsin(modulus)  # from the hanging vertical
-    period = 4 * float(ellipk(modulus**2)) * np.sqrt(2 / (3 * 9.807))
-    sol = pc.simulate(ROD, (0, period), start, rtol=1e-13, atol=1e-14)
+    amplitude = 2 * np.arcsin(0.999999)
+    start, end = np.pi / 2 - amplitude, float(period_of(amplitude, 9.807))
+    sol = pc.simulate(ROD, (0, end), start, rtol=1e-13, atol=1e-14)
     assert sol.q[-1, 0] == pytest.approx(start, abs=1e-8)
 
 

@@ -10,7 +10,8 @@ from typing import Any
 import mpmath
 import numpy as np
 from cases import Array
-from mpmath import ellipk, mp, mpf, sqrt
+from mpmath import mp, mpf
+from swings import period_of
 from trajectory_error import energy
 
 from hard_cases.outcome import Outcome
@@ -174,9 +175,7 @@ class Separatrix(Scene):
     amplitude = float(2 * np.arcsin(0.999999))
     zero, sign, start = HANGING, -1.0, (amplitude,)
     settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
-    with mp.workdps(30):
-        modulus = mpmath.sin(mpf(amplitude) / 2)
-        span = (0.0, float(4 * ellipk(modulus**2) * sqrt(2 / (3 * mpf(G)))))
+    span = (0.0, float(period_of(amplitude, G)))
 
     @property
     def numbers(self) -> dict[str, float]:
