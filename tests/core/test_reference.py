@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from reference import dormand_prince
-from reference.arithmetic import Number, multiple_precision
-from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
+from reference.arithmetic import DOUBLE, Number, multiple_precision
+from reference.effects import Motor
+from reference.newton_euler import Body, Motion, uniform_rod
 from reference.order_conditions import order_of, trees
 from reference.rig import Rig
 
@@ -21,13 +23,14 @@ BODIES = [
 Q, QD, COUPLES = [0.3, -2.1, 4.0, 1.2], [1.5, -3.0, 0.2, 6.0], [0.4, -0.7, 2.0, 0.1]
 GRAVITY = 9.81
 FIFTY = multiple_precision(50)
-RIG = Rig(bodies=BODIES, gravity=GRAVITY, arithmetic=FIFTY)
+MOTORS = [Motor(joint=j, constant=couple) for j, couple in enumerate(COUPLES, start=1)]
+RIG = Rig(bodies=BODIES, gravity=GRAVITY, effects=MOTORS, arithmetic=FIFTY)
 ROOTED_TREES = [1, 1, 2, 4, 9, 20, 48, 115]  # of 1, 2, ... nodes
 
 
 def moved(s: Number) -> tuple[list[Number], list[Number]]:
     """Return angles and rates a short time s later, to the second and first order in s."""
-    qdd = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY).accelerations
+    qdd = RIG.motion(0, Q, QD).accelerations
     number = FIFTY.number
     q = [number(x) + s * number(w) + s * s / 2 * a for x, w, a in zip(Q, QD, qdd, strict=True)]
     return q, [number(w) + s * a for w, a in zip(QD, qdd, strict=True)]
@@ -43,7 +46,7 @@ def derivative(f: Callable[[Number], Number], order: int = 1) -> Number:
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
+    return RIG.motion(0, Q, QD)
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -72,7 +75,7 @@ def test_the_angular_momentum_grows_by_the_moments_about_the_pivot() -> None:
 
 
 def test_doubles_and_fifty_digits_agree(motion) -> None:
-    double = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES)
+    double = replace(RIG, arithmetic=DOUBLE).motion(0, Q, QD)
     for name, rtol in (("accelerations", 1e-12), ("reactions", 1e-11)):
         exact = np.array(getattr(motion, name), dtype=float)
         np.testing.assert_allclose(getattr(double, name), exact, rtol=rtol)
