@@ -169,3 +169,10 @@ def motion_of_seed(seed: str, kind: str) -> Drawn:
 def stopped_motion_of_seed(seed: str) -> Drawn:
     """Return a motion with stops."""
     return _of_seed(seed, stopped_motion)
+
+
+def at_fifths(run: Drawn, **changes: Any) -> np.ndarray:
+    """Return the states at fifths of the span; the run must get there."""
+    sol = run.simulate(**changes)
+    assert sol.success, sol.message
+    return sol(np.linspace(*run.t_span, 6))
