@@ -50,6 +50,7 @@ options = st.fixed_dictionaries(
         "max_steps": st.integers(1, 10**18),
         "progress": st.booleans(),
         "ledger": st.booleans(),
+        "compensated": st.booleans(),
     },
 )
 

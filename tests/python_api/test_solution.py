@@ -153,8 +153,9 @@ def test_the_case_of_a_solution_gives_the_same_solution(sol):
 @pytest.mark.parametrize("store", ["dense", "steps", "times", "end"])
 @pytest.mark.parametrize("way", ["pickle", "deepcopy", "npz", "case"])
 @pytest.mark.parametrize("effects", [[], WITH_LEDGER], ids=["bare", "with a ledger"])
-def test_a_solution_comes_back_whole(store, way, effects, tmp_path):
-    how = {"store": store, "rtol": [1e-8] * 4, "ledger": bool(effects)}
+@pytest.mark.parametrize("compensated", [False, True])
+def test_a_solution_comes_back_whole(store, way, effects, compensated, tmp_path):
+    how = {"store": store, "rtol": [1e-8] * 4, "ledger": bool(effects), "compensated": compensated}
     how["t_eval"] = [0.25, 0.5, 1.0] if store == "times" else None
     first = pc.simulate(SCENE.replace(effects=effects), q0=0.3, t_span=(0, 1), **how)
     if way == "case":
