@@ -7,11 +7,9 @@ from functools import cache
 from math import cos, pi, sin
 from typing import Any
 
-import mpmath
 import numpy as np
 from cases import Array
-from mpmath import mp, mpf
-from swings import period_of
+from swings import period_of, time_of_fall
 from trajectory_error import energy
 
 from hard_cases.outcome import Outcome
@@ -115,19 +113,8 @@ class Upright(Scene):
 
     @cache  # noqa: B019
     def fall_time(self) -> float:
-        """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double start."""
-        with mp.workdps(25):
-            rates = two_rods(of=mpmath, one=mpf(1))
-            motion = mpmath.odefun(rates, 0, [*map(mpf, self.start), 0, 0])
-
-            def off(t: Any) -> Any:
-                return max(abs(x - mpf(UPRIGHT)) for x in motion(t)[:2]) - 1
-
-            t = mpf(1)
-            while off(t) < 0:
-                t += mpf(1) / 10
-            bracket = (t - mpf(1) / 10, t)
-            return float(mpmath.findroot(off, bracket, solver="anderson", tol=1e-30))
+        """Return when link 1 or 2 is 1 rad off, from the exact double start."""
+        return time_of_fall(2, self.start[0], G)
 
     def reference(self) -> dict[str, list[float]]:
         return {"t": [self.fall_time()]}
