@@ -140,7 +140,7 @@ Matrix VariationalEquations::changes_of_start() const {
 void VariationalEquations::choose_laws(double t, const double* y) {
   if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
   modes_ = modes_at(scene_, t, y, y + n_);
-  put_along(t, true);
+  put_along(t, true, nullptr);
 }
 
 void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, bool forward) {
@@ -149,15 +149,15 @@ void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, boo
   for (std::size_t i = 0; i < modes_.size(); ++i) equations_.effects->put_mode(i, modes_[i]);
   equations_.held_joints->restore(*equations_.effects, run.held_joints->saved_state(),
                                   run.held_joints->has_failed());
-  put_along(t, forward);
+  put_along(t, forward, &corners_);
 }
 
 /// Makes what depends on modes and holds.
-void VariationalEquations::put_along(double t, bool forward) {
+void VariationalEquations::put_along(double t, bool forward, std::vector<bool>* corners) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
   forces_ = JointForces::on_free_joints(scene_, held);
-  mechanisms_ = mechanisms_along(scene_, modes_, t, forward, names_of_parameters_);
+  mechanisms_ = mechanisms_along(scene_, modes_, t, forward, names_of_parameters_, corners);
 }
 
 void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q,

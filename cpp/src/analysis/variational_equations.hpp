@@ -44,6 +44,8 @@ class VariationalEquations {
   const Scene& scene() const { return scene_; }
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
+  /// Of which of them a law that has been taken has a corner: there is no derivative by these.
+  const std::vector<bool>& corners() const { return corners_; }
   /// The numbers of the scene along them, in the laws that are in force.
   const std::vector<Mechanism<AlongParameters>>& mechanisms() const { return mechanisms_; }
   /// With the laws that are in force.
@@ -68,7 +70,7 @@ class VariationalEquations {
   }
 
  private:
-  void put_along(double t, bool forward);
+  void put_along(double t, bool forward, std::vector<bool>* corners);
 
   std::vector<std::string> names_, known_names_;
   Scene scene_;
@@ -77,6 +79,7 @@ class VariationalEquations {
   Jacobian jacobian_;
   std::vector<Parameter> parameters_;
   std::vector<std::string> names_of_parameters_;
+  std::vector<bool> corners_;
   std::vector<int> modes_;
   std::optional<JointForces> forces_;  ///< on the joints that turn
   std::vector<Mechanism<AlongParameters>> mechanisms_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "arithmetic/extrapolated_slope.hpp"
@@ -84,11 +86,12 @@ bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool f
   return false;
 }
 
-/// The slopes of all numbers of a mechanism along one of some parameters, which have these values.
-std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                 bool forward, const ParameterChoice& choice,
-                                 std::vector<double> values, const std::vector<std::string>& names,
-                                 std::size_t which) {
+/// The slopes of all numbers of a mechanism along one of some parameters, which have these values;
+/// nothing where a law has a corner.
+std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::vector<int>& modes,
+                                                double t, bool forward,
+                                                const ParameterChoice& choice,
+                                                std::vector<double> values, std::size_t which) {
   const double value = values[which];
   Mechanism<double> here = mechanism(scene, modes);
   const std::vector<double*> numbers = numbers_of(here);
@@ -126,10 +129,7 @@ std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& mod
   const double smallest = 0x1p-20 * h;
   while (std::isfinite(value) && !take_slopes(h)) {
     h *= 0x1p-4;
-    if (h >= smallest) continue;
-    throw std::invalid_argument("parameter \"" + names[which] +
-                                "\": a law has a corner at this value: there is no derivative by "
-                                "it; it has one at a slightly larger or smaller value");
+    if (h < smallest) return std::nullopt;
   }
   return slopes;
 }
@@ -177,7 +177,8 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
 std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
                                                          const std::vector<int>& modes, double t,
                                                          bool forward,
-                                                         const std::vector<std::string>& names) {
+                                                         const std::vector<std::string>& names,
+                                                         std::vector<bool>* corners) {
   const ParameterChoice choice(scene, names);
   const std::vector<NamedNumber> known = parameters(scene);
   std::vector<double> values;
@@ -185,6 +186,7 @@ std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
   for (const std::string& name : names) {
     values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
   }
+  if (corners != nullptr) corners->assign(names.size(), false);
   Mechanism<double> here = mechanism(scene, modes);
   std::vector<Mechanism<AlongParameters>> result;
   for (std::size_t which = 0; which < names.size(); ++which) {
@@ -197,11 +199,16 @@ std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
         *duals[i] = AlongParameters(*numbers[i]);
       }
     }
-    const std::vector<double> slopes =
-        slopes_along(scene, modes, t, forward, choice, values, names, which);
+    const std::optional<std::vector<double>> slopes =
+        slopes_along(scene, modes, t, forward, choice, values, which);
+    if (!slopes && corners == nullptr) {
+      throw std::invalid_argument("parameter \"" + names[which] + "\": " + corner_of_a_law);
+    }
+    if (!slopes) (*corners)[which] = true;
     const std::vector<AlongParameters*> duals = numbers_of(result.back());
     for (std::size_t i = 0; i < duals.size(); ++i) {
-      set_lane(duals[i]->slope, static_cast<int>(lane), slopes[i]);
+      const double slope = slopes ? (*slopes)[i] : std::numeric_limits<double>::quiet_NaN();
+      set_lane(duals[i]->slope, static_cast<int>(lane), slope);
     }
   }
   return result;

@@ -60,16 +60,22 @@ std::vector<int> modes_at(const Scene& scene, double t, const double* q, const d
 
 Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
 
+inline constexpr const char* corner_of_a_law =
+    "a law has a corner at this value: there is no derivative by it; it has one at a slightly "
+    "larger "
+    "or smaller value";
+
 /// The same with slopes along some parameters (pendcore/parameters.hpp), four in each mechanism,
 /// from a time on. What other parameters of the list give stays as it is: the centre of a rod that
 /// is named does not follow its length. Slopes are right to some 13 digits: the constants of laws
 /// are smooth functions of parameters, whose differences are extrapolated. Throws
 /// std::invalid_argument for a name that the scene does not have, and for a value at which a law
-/// has a corner.
+/// has a corner; with `corners`, which are told for each name, its slopes are NaN there.
 std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
                                                          const std::vector<int>& modes, double t,
                                                          bool forward,
-                                                         const std::vector<std::string>& names);
+                                                         const std::vector<std::string>& names,
+                                                         std::vector<bool>* corners = nullptr);
 
 /// What laws see of one link or joint (effects/laws.hpp).
 template <class Number>
