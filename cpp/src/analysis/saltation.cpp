@@ -272,7 +272,8 @@ std::string Saltation::border(const WatchedChange& change) {
     const Hold& hold = joints.holds()[j];
     if (joints.is_held(j)) {
       const double room = std::min(torques[j] - hold.least, hold.most - torques[j]);
-      if (room > rounding_of_rates * joints.torque_size(j)) continue;
+      // Far beyond its limit, after a jump of the load, the joint is let go next.
+      if (std::abs(room) > rounding_of_rates * joints.torque_size(j)) continue;
     } else {
       const bool may_be_held =
           !support.friction_effects.empty() || joints.contact(j, q) != Side::none;
