@@ -13,11 +13,10 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 from cases import Array
 from contenders.programs import Calls, end_conversations
-from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts, nanoseconds
+from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts
 from machine import circumstances
 from measure import interleave
 from record import Record
-from tqdm import tqdm
 from trajectory_error import coupling
 
 LENGTHS = (2, 7, 30)
@@ -84,8 +83,7 @@ def measure(*, quick: bool, rounds: int) -> Record:
     begin = time.perf_counter()
     try:
         calls, errors, entrants = prepare()
-        bar = tqdm(range(rounds), desc="derivatives", unit="round", disable=None)
-        timings = interleave(calls, bar, BURST_SECONDS)
+        timings = interleave(calls, rounds, BURST_SECONDS, what="derivatives")
     finally:
         end_conversations()
     return Record.of(
@@ -93,7 +91,7 @@ def measure(*, quick: bool, rounds: int) -> Record:
         entrants,
         {str(n): {"n": n} for n in LENGTHS},
         [
-            {"contender": who, "case": str(n), **nanoseconds(timing), "error": errors[who, n]}
+            {"contender": who, "case": str(n), **timing.row("ns", 1e9), "error": errors[who, n]}
             for (who, n), timing in timings.items()
         ],
     )
