@@ -13,11 +13,11 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 from cases import Array
 from contenders.programs import Calls, end_conversations
+from dense_chain import DenseChain
 from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts
 from machine import circumstances
 from measure import interleave
 from record import Record
-from trajectory_error import coupling
 
 LENGTHS = (2, 7, 30)
 BURST_SECONDS = 2e-3
@@ -42,8 +42,10 @@ def derivatives(scene: ChainScene, *, at_joints: bool) -> Array:
         if at_joints:  # whose angles and rates are rounded as well
             q, qd = (many_digits(np.diff(x, prepend=0.0)) for x in (scene.q[0], scene.qd[0]))
             q, qd = np.cumsum(q), np.cumsum(qd)
-        matrix, moments = coupling(many_digits(scene.masses), many_digits(scene.lengths))
-        weights, apart = moments * mpmath.mpf(scene.gravity), q[:, None] - q[None, :]
+        masses, lengths = many_digits(scene.masses), many_digits(scene.lengths)
+        chain = DenseChain(masses=masses, lengths=lengths, gravity=scene.gravity)
+        matrix, apart = chain.couplings, q[:, None] - q[None, :]
+        weights = chain.moments * mpmath.mpf(scene.gravity)
         sine, cosine = (np.vectorize(f, otypes=[object]) for f in (mpmath.sin, mpmath.cos))
         c, s = matrix * cosine(apart), matrix * sine(apart)
         inverse = np.array(mpmath.inverse(mpmath.matrix(c.tolist())).tolist(), dtype=object)
