@@ -17,10 +17,11 @@ import effects
 import forward_derivatives
 from cases import one_step, read_case
 from contenders.contender import Outcome, PythonRun, Unsupported
+from dense_chain import DenseChain
 from equal_error import SIDES, compare, envelope, time_at
 from forward_dynamics import ChainScene, chain_scene
 from measure import achieved, interleave
-from trajectory_error import coupling, end_error, energy_error, position_error
+from trajectory_error import end_error, energy_error, position_error
 
 LENGTHS = np.array([1.0, 3.0])
 POWER_LAW = [(10.0**-k, 5.0 * 10 ** (0.2 * k)) for k in range(1, 13)]  # time = 5 error^-1/5
@@ -183,8 +184,8 @@ def test_dense_equations_of_chains_have_these_derivatives():
         ]
         differences = np.subtract(*ends).T / (2 * by)
         np.testing.assert_allclose(known, differences, rtol=0, atol=1e-8 * np.abs(known).max())
-    matrix, _ = coupling(scene.masses, scene.lengths)
-    mass = matrix * np.cos(scene.q[0][:, None] - scene.q[0])
+    chain = DenseChain(masses=scene.masses, lengths=scene.lengths, gravity=scene.gravity)
+    mass = chain.mass_matrix(scene.q[0])
     np.testing.assert_allclose(mass @ found[2], [[1, -1, 0], [0, 1, -1], [0, 0, 1]], atol=1e-14)
     at_joints = forward_derivatives.derivatives(scene, at_joints=True)
     np.testing.assert_allclose(at_joints.cumsum(axis=1)[:2], found[:2] @ np.tri(3), atol=1e-12)
