@@ -33,7 +33,7 @@ struct SeriesOf<AlongNames> {
   }
 };
 template <>
-inline constexpr bool is_bound_by_waiting<AlongNames> = false;
+inline constexpr bool has_long_orders<AlongNames> = true;
 
 /// A row or a rate in memory, whose products are added to a sum.
 struct RowInMemory {

@@ -316,10 +316,9 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   pulls[k] = joined(pull_x, fma_of_links(pull_cosine, y, pull_sine * x));
 }
 
-/// Whether a series is bound by how long an order waits for the one before, and not by the number
-/// of its operations.
+/// Whether an order of a series takes so many instructions that its code stands once.
 template <class Number>
-inline constexpr bool is_bound_by_waiting = Lanes<Number>::width == 1;
+inline constexpr bool has_long_orders = false;
 
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
 /// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the
@@ -369,12 +368,18 @@ PENDCORE_INLINE void expand_double_pendulum(const OfLinks& constants, const Numb
   using Row = typename Orders::Row;
   typename Orders::Last last;
   Orders orders(constants, y, sigma, torque, coefficients, last);
-  orders.next(1, Row{}, Row{}, torque, coefficients, last);
-  expand_by_two<Row, is_bound_by_waiting<Number>>(
-      order, [&](const auto& add) __attribute__((always_inline)) { return sums_of(orders, add); },
-      [&](std::ptrdiff_t k, const Row& along, const Row& across) __attribute__((always_inline)) {
-        orders.next(k, along, across, torque, coefficients, last);
-      });
+  const auto sums = [&](const auto& add)
+                        __attribute__((always_inline)) { return sums_of(orders, add); };
+  const auto next = [&](std::ptrdiff_t k, const Row& along, const Row& across)
+                        __attribute__((always_inline)) {
+                          orders.next(k, along, across, torque, coefficients, last);
+                        };
+  if constexpr (has_long_orders<Number>) {
+    expand_one_by_one<Row>(order, sums, next);
+  } else {
+    next(1, Row{}, Row{});
+    expand_by_two<Row, (Lanes<Number>::width == 1)>(order, sums, next);
+  }
 }
 
 template <class Torque>
