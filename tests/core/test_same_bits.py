@@ -40,6 +40,7 @@ RUNS = """
 tabled = pc.Scene(links=bouncing.links, effects=[
     fx.Motor(1, table=fx.Table((0.0, 0.3, 1.1, 4.0), (0.7, -2.3, 1.9, 0.1)), limit=1.7),
     fx.DrivenPivot(spline=fx.Spline((0.0, 0.7, 1.3, 4.0), (0, 0.1, 0.05, 0.2), (0, 0.03, 0.1, 0)))])
+names = ["q0[1]", "gravity", "link[2].mass"]
 runs = [
     pc.simulate(tabled, (0, 3), [0.4, 0.8]),
     pc.simulate(book, (0, 60), [0.7853981633974483, 1.0471975511965976]),
@@ -57,6 +58,9 @@ runs = [
     *(pc.simulate(driven, (0, 4), 0.4, method="taylor", rtol=rtol) for rtol in (1e-3, 1e-13)),
     *(pc.simulate(damped, (0, 1), [0.8, 1.0], events=events, method=method, compensated=True)
       for method in ("radau5", "dopri5-radau5", "dop853-radau5", "taylor-radau5")),
+    pc.simulate(book, (0, 5), [0.8, 1.0], method="taylor", sensitivities=names),
+    pc.simulate(driven, (0, 4), 0.4, sensitivities=[*names, "effect[1].x.amplitude"]),
+    pc.simulate(bouncing, (0, 2), [0.4, 0.8], [2, -3], sensitivities=names),
 ]
 print(_core.instruction_set())
 for sol in runs:
@@ -64,7 +68,8 @@ for sol in runs:
     digest = hashlib.sha256()
     energy, dense = sol.energy(), sol._run.__getstate__()["dense_coefficients"]
     for part in (sol.t, sol.y, dense, sol.accelerations(), sol.reactions(), sol.positions(),
-                 energy.kinetic, energy.potential):
+                 energy.kinetic, energy.potential,
+                 [] if sol.sensitivities is None else sol.sensitivities):
         digest.update(np.ascontiguousarray(part).tobytes())
     for one in [one for found in sol.events or () for one in found]:
         digest.update(np.array([one.t, *one.y]).tobytes())
