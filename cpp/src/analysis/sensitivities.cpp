@@ -9,6 +9,7 @@
 #include "analysis/collocation_kernels.hpp"
 #include "analysis/saltation.hpp"
 #include "arithmetic/epsilon.hpp"
+#include "arithmetic/floating_point_environment.hpp"
 #include "arithmetic/instruction_set.hpp"
 #include "integrate/horner.hpp"
 #include "text/message.hpp"
@@ -238,8 +239,10 @@ void Sensitivities::Variation::change_laws(const WatchedChange& change) {
   keep(change.t);
 }
 
-Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>& names)
-    : variation_(std::make_unique<Variation>(scene, names)) {}
+Sensitivities::Sensitivities(const Scene& scene, const std::vector<std::string>& names) {
+  const FloatingPointEnvironment ieee;
+  variation_ = std::make_unique<Variation>(scene, names);
+}
 Sensitivities::~Sensitivities() = default;
 Sensitivities::Sensitivities(Sensitivities&&) noexcept = default;
 
