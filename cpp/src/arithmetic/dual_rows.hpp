@@ -14,22 +14,12 @@ struct RowOfLinks<Dual<double>, links> {
 };
 }  // namespace row_detail
 
-PENDCORE_INLINE Dual<Pairs> joined(const Dual<Pair>& low, const Dual<Pair>& high) {
-  return {joined(low.value, high.value), joined(low.slope, high.slope)};
-}
-PENDCORE_INLINE Dual<Pair> low_half(const Dual<Pairs>& x) {
-  return {low_half(x.value), low_half(x.slope)};
-}
-PENDCORE_INLINE Dual<Pair> high_half(const Dual<Pairs>& x) {
-  return {high_half(x.value), high_half(x.slope)};
-}
-PENDCORE_INLINE Dual<Pairs> twice(const Dual<Pair>& x) { return {twice(x.value), twice(x.slope)}; }
-PENDCORE_INLINE Dual<Pairs> halves_added(const Dual<Pairs>& x) {
-  return {halves_added(x.value), halves_added(x.slope)};
-}
-PENDCORE_INLINE Dual<Pairs> turned(const Dual<Pairs>& x) {
-  return {turned(x.value), turned(x.slope)};
-}
+PENDCORE_LINEAR_FUNCTION(joined)
+PENDCORE_LINEAR_FUNCTION(low_half)
+PENDCORE_LINEAR_FUNCTION(high_half)
+PENDCORE_LINEAR_FUNCTION(twice)
+PENDCORE_LINEAR_FUNCTION(halves_added)
+PENDCORE_LINEAR_FUNCTION(turned)
 
 PENDCORE_INLINE Dual<double> number_of(const Dual<Pack<4>>& row, int i) {
   return {row.value[i], row.slope[i]};

@@ -8,6 +8,7 @@
 #include "arithmetic/extrapolated_slope.hpp"
 #include "arithmetic/instruction_set.hpp"
 #include "arithmetic/sine_cosine.hpp"
+#include "dynamics/equations_of_motion.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
@@ -138,11 +139,7 @@ std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& mod
 
 std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
   std::vector<int> modes;
-  for (const Effect& effect : scene.effects) {
-    const int joint = effect->joint();
-    modes.push_back(effect->mode_at(t, joint > 0 ? relative(q, joint) : 0.0,
-                                    joint > 0 ? relative(qd, joint) : 0.0, true));
-  }
+  for (const Effect& effect : scene.effects) modes.push_back(mode_at(*effect, t, q, qd, true));
   return modes;
 }
 
@@ -220,8 +217,8 @@ void InverseDynamics<Number>::compute(const Mechanism<Number>& mechanism, double
   loads_.assign(n, {});
   torques_.resize(n);
   forces_.resize(n);
-  static const auto go = fastest<&InverseDynamics::go_out_and_back>();
-  go(this, &mechanism, t, q.data(), qd.data(), qdd.data());
+  on_this_processor<&InverseDynamics::go_out_and_back>(this, &mechanism, t, q.data(), qd.data(),
+                                                       qdd.data());
 }
 
 template <class Number>
