@@ -7,9 +7,10 @@
 #include "ensemble/series_lanes.hpp"
 
 // A template that is compiled elsewhere must be named in full, once with `extern` and once without.
-#define PENDCORE_EXPAND_KERNEL(maybe_extern, Form, set)                   \
-  maybe_extern template ExpandKernel<Form, width_on(InstructionSet::set)> \
-  expand_kernel_on<Form, InstructionSet::set>();
+#define PENDCORE_EXPAND_KERNEL(maybe_extern, Form, set)                         \
+  maybe_extern template ExpandKernel<Form<Pack<width_on(InstructionSet::set)>>, \
+                                     width_on(InstructionSet::set)>             \
+  expand_kernel_on<Form<Pack<width_on(InstructionSet::set)>>, InstructionSet::set>();
 #if PENDCORE_CLONES
 #define PENDCORE_EXPAND_KERNELS(maybe_extern, Form)     \
   PENDCORE_EXPAND_KERNEL(maybe_extern, Form, x86_64_v3) \
