@@ -228,7 +228,6 @@ std::string json_of_events(const std::vector<Event>& events) {
   return json_of(pairs);
 }
 
-/// The events that were found, as columns.
 struct FoundColumns {
   std::vector<double> event{}, t{}, direction{}, y{};
   std::vector<double> y_before{};  ///< NaN where the state does not jump

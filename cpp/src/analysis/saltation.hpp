@@ -22,7 +22,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "analysis/impact_on_changes.hpp"
 #include "analysis/variational_equations.hpp"

@@ -15,7 +15,6 @@
 #include "integrate/loop/run_limits.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"
-#include "simulate/continuation.hpp"
 #include "simulate/ending_message.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/method_choice.hpp"
