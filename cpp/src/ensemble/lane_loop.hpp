@@ -179,8 +179,7 @@ class LaneLoop : public RecordingLanes<width> {
     run.n = static_cast<int>(scene_.links.size());
     run.dimension = static_cast<int>(size);
     run.start.resize(size);
-    run.resumable_found = run.found.size();
-    run.resumable_t = run.t.size();
+    run.resumable_kept = {.t = run.t.size(), .steps = 0, .found = run.found.size()};
     IntegratorState state;
     state.t = {at.t[lane], at.t_low[lane]};
     state.h = at.h[lane];
