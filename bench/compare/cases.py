@@ -7,13 +7,16 @@ multiple precision.
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-REFERENCES = Path(__file__).parents[2] / "tests" / "data" / "trajectories.json"
+TESTS = Path(__file__).parents[2] / "tests"
+sys.path += [str(TESTS), str(TESTS / "models")]  # references that share no code with the core
+REFERENCES = TESTS / "data" / "trajectories.json"
 Array = npt.NDArray[np.float64]
 
 

@@ -8,12 +8,11 @@ import numpy as np
 from cases import Array
 from contenders.contender import Contender, Unsupported
 from contenders.programs import Calls, end_conversations
-from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts, nanoseconds
+from dense_chain import DenseChain
+from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts
 from machine import circumstances
 from measure import interleave
 from record import Record
-from tqdm import tqdm
-from trajectory_error import coupling
 
 LENGTHS = (2, 3, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)
 QUICK_LENGTHS = (2, 10, 100, 500)
@@ -23,15 +22,10 @@ ALLOWED_DISAGREEMENT = 1e-6  # relative angles are badly conditioned in long cha
 
 
 def accelerations(scene: ChainScene) -> Array:
-    """Solve the dense equations of the documents for qdd (n,) at the scene's first state.
-
-    sum_j A_ij cos(q_i - q_j) qdd_j + sum_j A_ij sin(q_i - q_j) qd_j^2 = a_i g cos q_i
-    """
+    """Solve the dense equations of the documents for qdd (n,) at the scene's first state."""
+    chain = DenseChain(masses=scene.masses, lengths=scene.lengths, gravity=scene.gravity)
     q, qd = scene.q[0], scene.qd[0]
-    matrix, moments = coupling(scene.masses, scene.lengths)
-    apart = q[:, None] - q[None, :]
-    forces = moments * scene.gravity * np.cos(q) - (matrix * np.sin(apart)) @ qd**2
-    return np.linalg.solve(matrix * np.cos(apart), forces)
+    return np.linalg.solve(chain.mass_matrix(q), chain.forces(q, qd, np.zeros(chain.n)))
 
 
 def prepare(
@@ -69,10 +63,9 @@ def measure(*, quick: bool, rounds: int) -> Record:
     try:
         entrants = [one for one in contenders() if not one.name.endswith(("_run", "_kernel"))]
         calls, errors, stops = prepare(entrants, lengths)
-        bar = tqdm(range(rounds), desc="chains", unit="round", disable=None)
-        timings = interleave(calls, bar, BURST_SECONDS)
+        timings = interleave(calls, rounds, BURST_SECONDS, what="chains")
         rows = [
-            {"contender": who.name, "case": str(n), **nanoseconds(timings[key])}
+            {"contender": who.name, "case": str(n), **timings[key].row("ns", 1e9)}
             | {"bytes": calls[key].bytes(), "disagreement": errors.get(key)}
             for who in entrants
             for n in lengths

@@ -12,11 +12,10 @@ from cases import Array
 from contenders.contender import Contender, Unsupported
 from contenders.programs import Calls, end_conversations
 from effect_list import BARE, EFFECTS
-from forward_dynamics import chain_scene, contenders, disagreement, facts, nanoseconds
+from forward_dynamics import chain_scene, contenders, disagreement, facts
 from machine import circumstances
 from measure import interleave
 from record import Point, Record
-from tqdm import tqdm
 
 BURST_SECONDS = 2e-3
 CORE, PEER = "pendcore", "mujoco_forward"
@@ -62,13 +61,12 @@ def measure(*, quick: bool, rounds: int) -> Record:
     try:
         entrants = [one for one in contenders() if one.name in SIDES]
         calls, apart = prepare(entrants)
-        bar = tqdm(range(rounds), desc="effects", unit="round", disable=None)
-        timings = interleave(calls, bar, BURST_SECONDS)
+        timings = interleave(calls, rounds, BURST_SECONDS, what="effects")
     finally:
         end_conversations()
     rows: dict[tuple[str, str], Point] = {}
     for (who, effect), timing in timings.items():
-        row = {"contender": who, "case": effect, **nanoseconds(timing)}
+        row = {"contender": who, "case": effect, **timing.row("ns", 1e9)}
         rows[who, effect] = row | {"disagreement": apart.get(effect) if who == PEER else None}
     names = [effect.name for effect in (BARE, *EFFECTS) if effect.ours]
     for counted in [] if quick else count_instructions.rows_of(names):

@@ -22,7 +22,6 @@ from contenders.pendcore_python import scene_of
 from machine import circumstances
 from measure import interleave
 from record import Point, Record
-from tqdm import tqdm
 from trajectory_error import distances
 
 MEMBERS = 4096
@@ -206,12 +205,8 @@ def measured(name: str, *, quick: bool, rounds: int) -> tuple[Point, list[Point]
             runs[one.name, tolerance] = timed(solve)
             row = {"contender": one.name, "case": name, "setting": tolerance}
             rows[one.name, tolerance] = row | {"error": float(np.median(errors))}
-    turns = tqdm(range(rounds), desc=name, unit="round", disable=None)
-    taken = interleave(runs, turns, BURST_SECONDS)
-    for key, timing in taken.items():
-        microseconds = 1e6 / min(FEW.get(key[0], members), members)
-        rows[key]["minimum_us"] = microseconds * timing.minimum
-        rows[key]["median_us"] = microseconds * timing.median
+    for key, timing in interleave(runs, rounds, BURST_SECONDS, what=name).items():
+        rows[key] |= timing.row("us", 1e6 / min(FEW.get(key[0], members), members))
     facts = {"label": SCENES[name], "members": members, "known": len(known)}
     return facts, list(rows.values())
 
@@ -230,7 +225,7 @@ def threads(rounds: int, members: int) -> list[Point]:
             "one loop": timed(lambda: list(pool.map(spin, [count]))),
             "two loops": timed(lambda: list(pool.map(spin, [count, count]))),
         }
-        taken = interleave(runs, range(rounds), BURST_SECONDS)
+        taken = interleave(runs, rounds, BURST_SECONDS)
     least = {name: timing.minimum for name, timing in taken.items()}
     gains = {
         "ensemble": least["one thread"] / least["two threads"],

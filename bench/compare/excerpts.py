@@ -6,13 +6,11 @@ They stand between a pair of comments that name them, and are written anew with 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 from equal_error import OUTER_SIDES, compare
 from record import Record
-from solve_tables import at_tolerance, per_evaluation, solves_of
+from solve_tables import at_tolerance, per_evaluation
 from tables import NONE, number, power, short, table
 
 sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
@@ -23,10 +21,9 @@ CORE, PYTHON = "pendcore_dopri5_cpp", "pendcore_dopri5"
 ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 
 
-def figures(data: Mapping[str, Any]) -> str:
+def figures(record: Record) -> str:
     """Sum up accuracy and speed: a row for each achieved error, then the cost of a call."""
-    record = Record(data)
-    _, who = solves_of(record)
+    who = record.taking_part()
     rows = []
     for error in ERRORS:
         cells = [f"{power(error)} of the length"]
@@ -48,17 +45,16 @@ def figures(data: Mapping[str, Any]) -> str:
     )
 
 
-def tolerances(data: Mapping[str, Any]) -> str:
+def tolerances(record: Record) -> str:
     """Tabulate the errors that tolerances give with dopri5."""
-    _, who = solves_of(Record(data))
-    core = next(one for one in who if one["name"] == CORE)
+    core = next(one for one in record.taking_part() if one["name"] == CORE)
     points = {decade: at_tolerance(core, 10.0**-decade) for decade in range(3, 14, 2)}
     rows = [[f"1e-{k}", f"{at['error']:.0e}", str(at["evaluations"])] for k, at in points.items()]
     header = ["rtol = atol", "largest position error / total length", "right-hand sides"]
     return table(header, rows)
 
 
-EXCERPTS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
+EXCERPTS = {
     "README.md": ("figures", figures),
     "docs/background/trust.md": ("tolerances", tolerances),
 }
@@ -67,4 +63,4 @@ EXCERPTS: dict[str, tuple[str, Callable[[Mapping[str, Any]], str]]] = {
 def write(project: Path, record: Record) -> None:
     """Bring the documents up to date with the record."""
     for document, (name, excerpt) in EXCERPTS.items():
-        rewrite(project / document, **{name: excerpt(record.data)})
+        rewrite(project / document, **{name: excerpt(record)})

@@ -20,7 +20,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 from pendcore.plotting import LIGHT, grid, new_axes, sheet
 from record import Record
-from solve_tables import case_name, solves_of
+from tables import words
 
 plt.style.use(sheet())
 
@@ -118,7 +118,7 @@ def error_axis(axes: Axes, tightest: float, loosest: float = 0.1) -> None:
 
 def draw_solves(record: Record, path: Path) -> None:
     """Draw each program at its best, and best against best below."""
-    _, who = solves_of(record)
+    who = record.taking_part()
     four = new_axes((12.0, 8.0), 2, 2, new_figure=plt.figure, height_ratios=(3, 1))
     drawn: Any = four[0].figure
     panels = (four[:2], four[2:])
@@ -136,7 +136,9 @@ def draw_solves(record: Record, path: Path) -> None:
             error_axis(axes, tightest, loosest=1.0)
     panels[0][0].set_ylabel("time of a run (\N{MICRO SIGN}s)")
     panels[1][0].set_ylabel("time / best other's")
-    drawn.suptitle(f"{case_name(record)}: what accuracy costs, each program by its best method")
+    drawn.suptitle(
+        f"{words(record, 'names')}: what accuracy costs, each program by its best method"
+    )
     drawn.text(0.01, -0.02, circumstances(record), fontsize=8, color=LIGHT.quiet)
     save(drawn, path, 150, bbox_inches="tight")
 

@@ -12,7 +12,6 @@ from cases import Array
 from contenders.contender import Contender, Unsupported
 from contenders.programs import CHAIN, Calls, Conversation, described, find_executable
 from effect_list import parameters
-from measure import Timing
 from record import Point
 
 GRAVITY = 9.807
@@ -87,14 +86,6 @@ def contenders() -> list[Contender]:
 
 def facts(contender: Contender) -> Point:
     return {"label": contender.label, "about": contender.about}
-
-
-def nanoseconds(timing: Timing) -> Point:
-    return {
-        "minimum_ns": 1e9 * timing.minimum,
-        "median_ns": 1e9 * timing.median,
-        "calls": timing.calls,
-    }
 
 
 def disagreement(found: Array, known: Array) -> float:

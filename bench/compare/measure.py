@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 import random
 import statistics
-from collections.abc import Collection, Hashable, Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
 from cases import Case
 from contenders.contender import Run, Timed
+from record import Point
+from tqdm import tqdm
 from trajectory_error import end_error, energy_error, position_error
 
 Key = TypeVar("Key", bound=Hashable)
@@ -29,26 +31,34 @@ class Timing:
     median: float
     calls: int
 
+    def row(self, unit: str, units_a_second: float) -> Point:
+        return {
+            f"minimum_{unit}": units_a_second * self.minimum,
+            f"median_{unit}": units_a_second * self.median,
+            "calls": self.calls,
+        }
+
 
 LEAST_TURNS = 3
 
 
 def interleave(
     runs: Mapping[Key, Timed],
-    rounds: Collection[int],
+    rounds: int,
     burst_seconds: float,
     seconds_a_run: float = math.inf,
+    what: str = "rounds",
 ) -> dict[Key, Timing]:
-    """Time all runs. `rounds` are the rounds' numbers, perhaps with a progress bar around them."""
+    """Time all runs; `what` is written beside the progress bar."""
     seconds: dict[Key, list[float]] = {key: [] for key in runs}
     spent: dict[Key, float] = dict.fromkeys(runs, 0.0)
-    for turn, number in enumerate(rounds):
+    for turn in tqdm(range(rounds), desc=what, unit="round", disable=None):
         order = list(runs)
-        random.Random(number).shuffle(order)
+        random.Random(turn).shuffle(order)
         for key in order:
             known = seconds[key]
             allowed = max(seconds_a_run, LEAST_TURNS * known[0]) if known else math.inf
-            if spent[key] > allowed * turn / len(rounds):
+            if spent[key] > allowed * turn / rounds:
                 continue
             taken = runs[key].burst(burst_seconds)
             known += taken
@@ -59,7 +69,7 @@ def interleave(
     }
 
 
-def achieved(run: Run, case: Case) -> dict[str, Any]:
+def achieved(run: Run, case: Case) -> Point:
     """Return how wrong the run's states are and what they took, or `failure`, a sentence."""
     try:
         outcome = run.outcome()

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from equal_error import DECADES, OUTER_SIDES, SIDES, Comparison, Contender, compare
 from record import Record
-from solve_tables import STIFF_ERRORS, solves_of
+from solve_tables import STIFF_ERRORS
 from tables import NONE, WORDS, listed, number, power, short, table
 
 Records = Mapping[str, Record]
@@ -16,7 +16,7 @@ NAMES = WORDS["names"]
 
 def known(records: Records) -> dict[str, list[Contender]]:
     """Return who took part in each case that is no stiff scene."""
-    return {stem: solves_of(records[stem])[1] for stem in NAMES if stem in records}
+    return {stem: records[stem].taking_part() for stem in NAMES if stem in records}
 
 
 def span(errors: list[float]) -> str:

@@ -73,9 +73,13 @@ class Record:
         """List the rows of a contender on a case, in their order."""
         return self._points.get((contender, case), [])
 
-    def taking_part(self, case: str) -> list[dict[str, Any]]:
-        """List contenders that have rows on a case: facts, name, points, the call of one step."""
+    def taking_part(self, case: str = "") -> list[dict[str, Any]]:
+        """List contenders that have rows on a case: facts, name, points, the call of one step.
+
+        The case need not be named where it is the only one.
+        """
         found = []
+        case = case or next(iter(self.cases), "")
         for name, facts in self.contenders.items():
             rows = self.points(name, case)
             points = [row for row in rows if row["setting"] != ONE_STEP]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 
 from equal_error import (
@@ -18,19 +19,13 @@ from equal_error import (
     time_at,
 )
 from record import Point, Record
-from tables import NONE, WORDS, failures, listed, number, pair, power, short, table
+from tables import NONE, fact, listed, number, pair, power, short, table
 
 SHOWN_TOLERANCES = (1e-6, 1e-9)
 KINDS = ("minimum_us", "median_us")
 STIFF_ERRORS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 ENSEMBLE_ERRORS = (1e-3, 1e-6, 1e-9, 1e-12)
 ENSEMBLE_BARS = {"bare": "1/3", "damped": "1/2", "motor": "1/2", "three_links": "1/2"}
-
-
-def solves_of(record: Record) -> tuple[str, Entrants]:
-    """Return the one case of a record of solves, and who took part."""
-    (case,) = record.cases
-    return case, record.taking_part(case)
 
 
 def both(at: Comparison, name: Callable[[str], str] = short) -> list[str]:
@@ -61,7 +56,7 @@ def best_against_best(who: Entrants, side: Side, errors: Iterable[float] = DECAD
 
 
 def sides(record: Record) -> str:
-    _, who = solves_of(record)
+    who = record.taking_part()
     parts = (f"## Best against best, {one.title}\n\n{best_against_best(who, one)}" for one in SIDES)
     return "\n".join(parts)
 
@@ -79,7 +74,7 @@ def everybody(record: Record) -> str:
     header, parts = ["us at an error of", *map(power, DECADES), "smallest error"], []
     for side in SIDES:
         rows = []
-        for one in (one for one in solves_of(record)[1] if side.ours in one["sides"]):
+        for one in (one for one in record.taking_part() if side.ours in one["sides"]):
             least = min((error for error, _ in curve(one)), default=None)
             last = power(least) if least else NONE
             rows.append([short(one["label"]), *at_errors(one, DECADES), last])
@@ -104,7 +99,7 @@ def per_evaluation(point: Point) -> float | None:
 
 def tolerances(record: Record) -> str:
     """Tabulate every contender that was tried with the shown tolerances."""
-    _, who = solves_of(record)
+    who = record.taking_part()
     header = ["contender", "error", "at the end", "of energy", "right-hand sides"]
     header += ["us", "median us", "ns a right-hand side"]
     parts = []
@@ -127,7 +122,7 @@ def tolerances(record: Record) -> str:
 
 def fixed_cost(record: Record) -> str:
     """Tabulate calls whose interval one step covers."""
-    calls = ((one["label"], one["one_step"]) for one in solves_of(record)[1])
+    calls = ((one["label"], one["one_step"]) for one in record.taking_part())
     rows = [
         [label, str(call.get("evaluations") or NONE), *(number(call[kind]) for kind in KINDS)]
         for label, call in calls
@@ -141,7 +136,7 @@ def losses(record: Record) -> str:
 
     Then come the peers whose call of one step costs less than pendcore's cheapest.
     """
-    _, who = solves_of(record)
+    who = record.taking_part()
     lines, calls = [], []
     for side in SIDES:
         lost = [(at, short(at.peer[1])) for at in compare(who, side) if at.peer and at.lost]
@@ -165,24 +160,26 @@ def losses(record: Record) -> str:
     return listed(lines + calls, otherwise="Nowhere among these contenders, 1e-2 to 1e-13.")
 
 
-def case(record: Record) -> str:
-    return solves_of(record)[0]
-
-
-def case_name(record: Record) -> str:
-    return str(WORDS["names"][case(record)])
-
-
-def about(record: Record) -> str:
-    return str(WORDS["about"][case(record)])
-
-
 def uncertainty(record: Record) -> str:
-    return power(record.cases[case(record)]["uncertainty"])
+    return power(fact(record, "uncertainty"))
 
 
 def failed(record: Record) -> str:
-    return listed(f"{line}." for line in failures(record, case(record)))
+    """Name each contender that failed somewhere, and why, without the times and counts of it."""
+    lines = []
+    for case in record.cases:
+        where = f" ({case})" if len(record.cases) > 1 else ""
+        for one in record.taking_part(case):
+            reasons: dict[str, list[str]] = {}
+            for point in one["points"]:
+                if "failure" in point:
+                    reason = re.sub(r" \(at t = [^)]*\)", "", point["failure"])
+                    reason = re.sub(r"(t =|mode set) [\d.e+-]+", r"\1 ...", reason)
+                    reasons.setdefault(reason.rstrip("."), []).append(power(point["setting"]))
+            for reason, at in reasons.items():
+                span = at[0] if len(at) == 1 else f"{at[0]} to {at[-1]}"
+                lines.append(f"{one['label']} at {span}: {reason}.{where}")
+    return listed(lines)
 
 
 def stiff_scene(record: Record, case: str) -> str:
@@ -208,10 +205,6 @@ def stiff_scene(record: Record, case: str) -> str:
 
 def stiff_scenes(record: Record) -> str:
     return "\n".join(stiff_scene(record, case) for case in record.cases)
-
-
-def stiff_failures(record: Record) -> str:
-    return listed(f"{line}. ({case})" for case in record.cases for line in failures(record, case))
 
 
 def ensemble_scenes(record: Record) -> str:

@@ -11,7 +11,7 @@ from cases import Case, one_step
 from contenders.contender import Contender, Run, Unsupported
 from contenders.programs import end_conversations
 from machine import circumstances
-from measure import Timing, achieved, interleave
+from measure import achieved, interleave
 from record import ONE_STEP, Point, Record
 from tqdm import tqdm
 
@@ -65,14 +65,6 @@ def first_look(
     return rows, runs
 
 
-def microseconds(timing: Timing) -> Point:
-    return {
-        "minimum_us": 1e6 * timing.minimum,
-        "median_us": 1e6 * timing.median,
-        "calls": timing.calls,
-    }
-
-
 def measure(
     case: Case,
     *,
@@ -105,13 +97,12 @@ def measure(
             rows += found[0]
             runs |= found[1]
             looked[who.name] = {name: getattr(who, name) for name in FACTS}
-        turns = tqdm(range(rounds), desc=f"{case.name}: rounds", unit="round", disable=None)
-        timings = interleave(runs, turns, BURST_SECONDS, SECONDS_A_RUN)
+        timings = interleave(runs, rounds, BURST_SECONDS, SECONDS_A_RUN, f"{case.name}: rounds")
     finally:
         end_conversations()
     for row in rows:
         if "failure" not in row:
-            row |= microseconds(timings[row["contender"], row["setting"]])
+            row |= timings[row["contender"], row["setting"]].row("us", 1e6)
     measured = {"comparison": case.name, **circumstances(begin, rounds, BURST_SECONDS)}
     known = {
         "uncertainty": case.uncertainty,

@@ -62,9 +62,13 @@ def measured(record: Record, what: str) -> str:
     return str(record.measured[what])
 
 
-def fact(record: Record, what: str) -> str:
+def fact(record: Record, what: str) -> Any:
     """Return a fact of the first case."""
-    return str(next(iter(record.cases.values()))[what])
+    return next(iter(record.cases.values()))[what]
+
+
+def words(record: Record, what: str) -> str:
+    return str(WORDS[what][record.measured["comparison"]])
 
 
 def who(record: Record) -> str:
@@ -104,19 +108,3 @@ def absent(record: Record) -> str:
     missing = record.measured.get("absent", {})
     lines = (f"not here: {who}: {reason}" for who, reason in missing.items())
     return f"\n{listed(lines)}\n" if missing else ""
-
-
-def failures(record: Record, case: str) -> list[str]:
-    """Name each contender that failed somewhere, and why, without the times and counts of it."""
-    lines = []
-    for one in record.taking_part(case):
-        reasons: dict[str, list[str]] = {}
-        for point in one["points"]:
-            if "failure" in point:
-                reason = re.sub(r" \(at t = [^)]*\)", "", point["failure"])
-                reason = re.sub(r"(t =|mode set) [\d.e+-]+", r"\1 ...", reason)
-                reasons.setdefault(reason, []).append(power(point["setting"]))
-        for reason, where in reasons.items():
-            span = where[0] if len(where) == 1 else f"{where[0]} to {where[-1]}"
-            lines.append(f"{one['label']} at {span}: {reason.rstrip('.')}")
-    return lines

@@ -10,9 +10,8 @@ from __future__ import annotations
 from typing import cast
 
 import numpy as np
-import numpy.typing as npt
-
-Array = npt.NDArray[np.float64]
+from cases import Array
+from dense_chain import DenseChain
 
 
 def joints_and_tip(q: Array, lengths: Array) -> Array:
@@ -37,22 +36,12 @@ def end_error(q: Array, reference: Array, lengths: Array) -> float:
     return float(distances(q, reference, lengths)[-1])
 
 
-def coupling(masses: Array, lengths: Array) -> tuple[Array, Array]:
-    """Return A (n, n) and a (n,) of rods: M = A cos(q_i - q_j), and a g cos q is the weight."""
-    beyond = np.append(np.cumsum(masses[::-1])[::-1][1:], 0.0)  # mass carried by each link
-    moments = lengths * (masses / 2 + beyond)
-    links = np.arange(len(masses))
-    matrix = lengths[np.minimum.outer(links, links)] * moments[np.maximum.outer(links, links)]
-    matrix[links, links] = lengths**2 * (masses / 3 + beyond)
-    return matrix, moments
-
-
 def energy(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> Array:
     """Return the energy of uniform rods at each time, J, (n_t,)."""
-    inertia, moment = coupling(masses, lengths)
-    couplings = inertia * np.cos(q[:, :, None] - q[:, None, :])
-    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, couplings, qd)
-    return cast(Array, kinetic - gravity * (np.sin(q) @ moment))
+    chain = DenseChain(masses=masses, lengths=lengths, gravity=gravity)
+    matrices = chain.couplings * np.cos(q[:, :, None] - q[:, None, :])
+    kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, matrices, qd)
+    return cast(Array, kinetic - gravity * (np.sin(q) @ chain.moments))
 
 
 def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:

@@ -1,6 +1,6 @@
 // One step on the textbook's case. For dopri5: six right-hand sides, the new state, its error norm.
 // For taylor, at tolerances 10^-digits: the new state and the series from there.
-// latency: each step starts where the step before ended. again: the same step, never accepted.
+// Each step starts where the step before ended.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -26,11 +26,6 @@ void latency(benchmark::State& state, const char* method) {
   }
 }
 
-void again(benchmark::State& state) {
-  const auto made = stepper("dopri5", 9);
-  for (auto _ : state) benchmark::DoNotOptimize(made->attempt({0.0}, h, 0.0));
-}
-
 BENCHMARK_CAPTURE(latency, dopri5, "dopri5")
     ->Name("step/latency/dopri5")
     ->Arg(9)
@@ -39,6 +34,5 @@ BENCHMARK_CAPTURE(latency, taylor, "taylor")
     ->Name("step/latency/taylor")
     ->DenseRange(3, 12, 3)
     ->ArgName("digits");
-BENCHMARK(again)->Name("step/again");
 
 }  // namespace

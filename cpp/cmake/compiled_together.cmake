@@ -3,7 +3,9 @@
 # serve. What takes longest stays alone: steppers, lanes, kernels of the equations, and Eigen's
 # templates. No two things in a unit may have one name; clang-tidy reads every source by itself.
 set(pendcore_stays_alone
-    "steppers|_lanes|lanes_|in_memory|implicit_runge|eigenvalues|tangent|jacobian|equations_of_m")
+    "steppers|_lanes|lanes_|in_memory|implicit_runge|eigenvalues|tangent|by_series|jacobian"
+    "equations_of_m")
+list(JOIN pendcore_stays_alone "|" pendcore_stays_alone)
 
 function(pendcore_compile_together target)
   get_target_property(sources ${target} SOURCES)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from inspect import signature
 from time import monotonic
 from typing import Any
@@ -11,9 +11,7 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
 import pytest
-from reference.effects import law
-from reference.newton_euler import Body
-from reference.rig import Rig
+from described_scenes import rig_of
 from reference.trajectories import trajectory as of_digits
 
 pytest.importorskip("heyoka", reason="the references of true errors need heyoka")
@@ -71,14 +69,11 @@ def test_trajectories_of_forty_digits(name: str) -> None:
 def check_accelerations(of: Drawn) -> None:
     """Compare with the Newton-Euler equations of each link, with every law in its plainest form."""
     n = len(of.q0)
-    bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in of.scene.links]
-    laws = [law(described(effect)) for effect in of.scene.effects]
-    rig = Rig(bodies=bodies, gravity=of.scene.gravity, effects=laws)
     found = trajectory(of, LONG)
     integrator = found.prepared(of.t_start + 1e-9 * found.direction).integrator
     integrator.step(write_tc=True)
     qdd = np.cumsum(integrator.tc[n:, 1]).astype(float)
-    expected = np.array(rig.motion(of.t_start, of.q0, of.qd0).accelerations, dtype=float)
+    expected = np.array(rig_of(of.scene).motion(of.t_start, of.q0, of.qd0).accelerations)
     np.testing.assert_allclose(qdd, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
 
@@ -104,17 +99,6 @@ def test_each_piece_of_a_law_is_that_of_another_derivation(kind: str) -> None:
     for phi in (-2.0, -0.1, 0.3, 2.0):
         for w in (-1.5, 1.5):
             check_accelerations(drawn([PIECES[kind]], (0.5, 0.5 + phi), (0.3, 0.3 + w), 1.0, 9.8))
-
-
-def described(effect: Any) -> tuple[str, dict[str, Any]]:
-    """Return an effect as the reference laws take it."""
-    values = {field.name: getattr(effect, field.name) for field in fields(effect)}
-    parts = (E.Sinusoid, E.Table, E.PD, E.Spline)
-    return effect.kind, {
-        name: {field.name: getattr(value, field.name) for field in fields(value)}
-        if isinstance(value, parts) else value
-        for name, value in values.items()
-    }  # fmt: skip
 
 
 @pytest.mark.few_cases

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
+from dense_chain import DenseChain
 from numpy.typing import ArrayLike
 from pendcore import effects as fx
 
@@ -51,11 +52,8 @@ def test_the_accelerations_are_those_of_a_dense_solution(n: int) -> None:
     """M qdd equals what gravity and centripetal forces leave, written out as a matrix equation."""
     random = np.random.default_rng(n)
     scene, q, qd = rods(n, length=n, mass=n), *random.uniform(-3, 3, (2, n))
-    a = np.arange(n, 0, -1) - 0.5  # for rods of 1 kg and 1 m
-    coupling = np.minimum.outer(a, a) + np.diag(np.full(n, -1 / 6))
-    difference = q[:, np.newaxis] - q
-    mass = coupling * np.cos(difference)
-    terms = a * scene.gravity * np.cos(q) - coupling * np.sin(difference) @ qd**2
+    dense = DenseChain(masses=np.ones(n), lengths=np.ones(n), gravity=scene.gravity)
+    mass, terms = dense.mass_matrix(q), dense.forces(q, qd, np.zeros(n))
     found = scene.accelerations(0.0, q, qd)
     assert np.abs(mass @ found - terms).max() < 1e-13 * n * np.abs(terms).max()
     np.testing.assert_allclose(found, np.linalg.solve(mass, terms), atol=1e-13 * n**2)

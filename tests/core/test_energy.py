@@ -89,22 +89,6 @@ def test_tolerances_are_those_of_angles_and_rates_alone(tolerance):
         simulate(ledger=True, **{tolerance: [1e-8] * 6})
 
 
-@pytest.mark.parametrize("store", ["dense", "steps", "times", "end"])
-@pytest.mark.parametrize("way", ["pickle", "npz", "case"])
-def test_a_run_with_a_ledger_comes_back_whole(store, way, tmp_path):
-    first = simulate(ledger=True, store=store, t_eval=[1.0, 2.5] if store == "times" else None)
-    if way == "npz":
-        first.save(tmp_path / "run.npz")
-        again = pc.load(tmp_path / "run.npz")
-    else:
-        again = first.case().simulate() if way == "case" else pickle.loads(pickle.dumps(first))
-    assert again.case() == first.case()
-    for a, b in ((first, again), (first.resume(4.0), again.resume(4.0))):
-        assert a.scene == b.scene == DAMPED
-        assert np.array_equal(a.y, b.y)
-        assert are_same(a.energy().ledger, b.energy().ledger)
-
-
 def test_a_ledger_counts_from_the_start_whatever_is_kept_and_goes_on_where_it_stopped(ledger):
     late = simulate(ledger=True, t_eval=[2.0, 3.0]).energy().ledger
     assert late.viscous[0] > 0.01

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from described_scenes import scene_of
+from described_scenes import rig_of, scene_of
 from numpy.typing import NDArray
 from pendcore import effects as fx
 from reference.arithmetic import multiple_precision
-from reference.effects import Described, law
+from reference.dormand_prince import integrate
+from reference.effects import Described
 from reference.newton_euler import Body, uniform_rod
 from reference.rig import Rig
 
@@ -73,9 +74,8 @@ def case(name: str) -> tuple[pc.Scene, Rig, list[float], list[float]]:
     for i in range(len(bodies)):
         before = rates[i - 1] if i else 0.0
         rates.append(before if i in locked else RATES[i])
-    laws = [law(one) for one in described]
-    rig = Rig(bodies=bodies, gravity=9.81, effects=laws, arithmetic=FORTY)
-    return scene_of(bodies, 9.81, described), rig, Q[: len(bodies)], rates
+    scene = scene_of(bodies, 9.81, described)
+    return scene, rig_of(scene, FORTY), Q[: len(bodies)], rates
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -97,21 +97,15 @@ def test_accelerations_reactions_and_energy_are_those_of_newton_and_euler(name: 
 
 @functools.cache
 def end_of_the_reference(name: str) -> NDArray[np.float64]:
-    """Return the state after 0.2 s by the classical Runge-Kutta method and Newton and Euler."""
-    _, rig, q, qd = case(name)
-    n = len(q)
-    plain = Rig(bodies=rig.bodies, gravity=rig.gravity, effects=rig.effects)
+    """Return the state after 0.2 s by the reference's dopri5 and Newton and Euler."""
+    scene, _, q, qd = case(name)
+    plain = rig_of(scene)
 
-    def slope(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.r_[y[n:], plain.motion(t, list(y[:n]), list(y[n:])).accelerations]
+    def rates(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        q, qd = np.split(y, 2)
+        return np.r_[qd, plain.motion(t, q.tolist(), qd.tolist()).accelerations]
 
-    y, h = np.r_[q, qd], 0.0005
-    for t in h * np.arange(400):
-        a = slope(t, y)
-        b = slope(t + h / 2, y + h / 2 * a)
-        c = slope(t + h / 2, y + h / 2 * b)
-        y = y + h / 6 * (a + 2 * b + 2 * c + slope(t + h, y + h * c))
-    return y
+    return integrate(rates, np.r_[q, qd], (0.0, 0.2), rtol=1e-11, atol=1e-12).y[-1]
 
 
 @pytest.mark.few_cases

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import chain, dormand_prince
-from reference.arithmetic import Number, multiple_precision
-from reference.newton_euler import Body, Motion, newton_euler, uniform_rod
+from reference import dormand_prince
+from reference.arithmetic import DOUBLE, Number, multiple_precision
+from reference.effects import Motor
+from reference.newton_euler import Body, Motion, uniform_rod
 from reference.order_conditions import order_of, trees
 from reference.rig import Rig
-from reference.trajectories import Trajectory, names, trajectory
 
 pytestmark = pytest.mark.unsanitized
 
@@ -22,13 +23,14 @@ BODIES = [
 Q, QD, COUPLES = [0.3, -2.1, 4.0, 1.2], [1.5, -3.0, 0.2, 6.0], [0.4, -0.7, 2.0, 0.1]
 GRAVITY = 9.81
 FIFTY = multiple_precision(50)
-RIG = Rig(bodies=BODIES, gravity=GRAVITY, arithmetic=FIFTY)
+MOTORS = [Motor(joint=j, constant=couple) for j, couple in enumerate(COUPLES, start=1)]
+RIG = Rig(bodies=BODIES, gravity=GRAVITY, effects=MOTORS, arithmetic=FIFTY)
 ROOTED_TREES = [1, 1, 2, 4, 9, 20, 48, 115]  # of 1, 2, ... nodes
 
 
 def moved(s: Number) -> tuple[list[Number], list[Number]]:
     """Return angles and rates a short time s later, to the second and first order in s."""
-    qdd = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY).accelerations
+    qdd = RIG.motion(0, Q, QD).accelerations
     number = FIFTY.number
     q = [number(x) + s * number(w) + s * s / 2 * a for x, w, a in zip(Q, QD, qdd, strict=True)]
     return q, [number(w) + s * a for w, a in zip(QD, qdd, strict=True)]
@@ -44,7 +46,7 @@ def derivative(f: Callable[[Number], Number], order: int = 1) -> Number:
 
 @pytest.fixture(scope="module")
 def motion() -> Motion:
-    return newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES, arithmetic=FIFTY)
+    return RIG.motion(0, Q, QD)
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -73,7 +75,7 @@ def test_the_angular_momentum_grows_by_the_moments_about_the_pivot() -> None:
 
 
 def test_doubles_and_fifty_digits_agree(motion) -> None:
-    double = newton_euler(BODIES, GRAVITY, Q, QD, couples=COUPLES)
+    double = replace(RIG, arithmetic=DOUBLE).motion(0, Q, QD)
     for name, rtol in (("accelerations", 1e-12), ("reactions", 1e-11)):
         exact = np.array(getattr(motion, name), dtype=float)
         np.testing.assert_allclose(getattr(double, name), exact, rtol=rtol)
@@ -85,42 +87,3 @@ def test_the_tableau_has_order_five_and_four() -> None:
     assert order_of(dormand_prince.A, dormand_prince.B) == 5
     assert order_of(dormand_prince.A, dormand_prince.B_FOURTH_ORDER) == 4
     assert [sum(row) for row in dormand_prince.A] == dormand_prince.C
-
-
-# The largest error of an angle at rtol = atol = 1e-10: how sensitive each motion is.
-BOUNDS = {
-    "textbook": 2e-9,
-    "textbook_long": 2e-7,
-    "horizontal_rest": 1e-7,
-    "high_energy": 1e-2,
-    "unequal": 2e-6,
-    "heavy_tip": 3e-10,
-    "light_tip": 2e-9,
-    "fast_spin": 3e-7,
-    "no_gravity": 2e-8,
-    "single_rod": 2e-7,
-    "damped_textbook": 5e-10,
-    "three_links": 1e-8,
-    "ten_links": 5e-9,
-}
-
-
-def simulate(case: Trajectory, t_end: float, tolerance: float) -> dormand_prince.Run:
-    return chain.simulate(case, t_end, rtol=tolerance, atol=tolerance)
-
-
-@pytest.mark.few_cases
-@pytest.mark.parametrize("name", names())
-def test_trajectories_follow_the_multiple_precision_ones(name: str) -> None:
-    case = trajectory(name)
-    run = simulate(case, float(case.t[-1]), 1e-10)
-    q = np.array([run(t)[: len(case.q0)] for t in case.t])
-    assert np.abs(q - case.q).max() < BOUNDS[name]
-
-
-def test_a_backward_run_mirrors_a_forward_one() -> None:
-    case = trajectory("textbook")
-    there, back = (simulate(case, sign * float(case.t[-1]), 1e-8) for sign in (1, -1))
-    np.testing.assert_array_equal(np.array(there.t), -np.array(back.t))
-    np.testing.assert_array_equal(np.array(there.y)[:, :2], np.array(back.y)[:, :2])
-    np.testing.assert_array_equal(there(1.234)[:2], back(-1.234)[:2])

@@ -5,20 +5,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from functools import partial
 from pathlib import Path
 
 import cmake
-import numpy as np
-import pendcore as pc
 import pytest
 from pendcore import _core
 
 ROOT = Path(__file__).parents[2]
 CMAKE = Path(cmake.CMAKE_BIN_DIR) / "cmake"
-BOOK = pc.Scene.textbook()
-ERROR_ORDERS = {method["name"]: method["error_order"] for method in _core.methods()}
-METHODS = list(ERROR_ORDERS)
 SETS = ["baseline", "x86-64-v3", "x86-64-v4"]
 
 RECORDED = (ROOT / "tests/cpp/trajectory_hash.txt").read_text()
@@ -175,39 +169,6 @@ def test_every_optimisation_gives_the_same_bits(flags, options, sets, tmp_path):
             env=os.environ | {"PENDCORE_INSTRUCTION_SET": used},
         ).stdout  # fmt: skip
         assert printed == RECORDED, used
-
-
-@pytest.mark.parametrize("method", ["dopri5", "taylor", "radau5"])
-def test_what_is_stored_or_sampled_changes_no_step(method):
-    grid = np.linspace(0.0, 20.0, 777)
-    run = partial(pc.simulate, BOOK, (0.0, 20.0), [-1.4, -1.1], method=method)
-    dense, steps, end = run(), run(store="steps"), run(store="end")
-    times, both = run(t_eval=grid), run(t_eval=grid, store="dense")
-    assert np.array_equal(dense.t, steps.t)
-    assert np.array_equal(dense.y, steps.y)
-    assert np.array_equal(end.y[:, -1], dense.y[:, -1])
-    assert np.array_equal(times.y, dense(grid))
-    assert np.array_equal(times.y, both.y)
-    assert dense.stats == steps.stats == end.stats == times.stats == both.stats
-
-
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("store", ["end", "times", "steps", "dense"])
-@pytest.mark.parametrize("stop", [0.0, 1e-4, 3.21, 9.999])
-def test_a_resumed_run_has_the_bits_of_one_that_never_stopped(method, store, stop):
-    grid = np.linspace(0, 10, 101)
-    whole, early, late = grid, grid[grid <= stop], grid[grid > stop]
-    if store != "times":
-        whole = early = late = None
-    step = None if ERROR_ORDERS[method] else 0.01
-    run = partial(pc.simulate, BOOK, q0=[-1.4, -1.1], method=method, store=store, step=step)
-    one = run(t_span=(0, 10), t_eval=whole)
-    resumed = run(t_span=(0, stop), t_eval=early).resume(10, t_eval=late)
-    assert np.array_equal(one.t, resumed.t)
-    assert np.array_equal(one.y, resumed.y)
-    assert one.stats == resumed.stats
-    if store == "dense":
-        assert np.array_equal(one(grid), resumed(grid))
 
 
 def test_a_misspelt_instruction_set_is_refused():

@@ -15,14 +15,13 @@ import numpy.typing as npt
 import pendcore as pc
 import pytest
 import sympy
+from described_scenes import rig_of
 from pendcore._scene.effect_description import effects
 from pendcore.derive import Derivation
 from pendcore.derive.chain import of_differences
 from pendcore.derive.laws import LAWS
 from reference.arithmetic import multiple_precision
-from reference.effects import law
-from reference.newton_euler import Body
-from reference.rig import Rig, balance
+from reference.rig import balance
 from symbolic_scenes import (
     DIGITS,
     SETS,
@@ -127,25 +126,12 @@ def test_the_powers_are_those_of_the_reference(kind: str, n: int) -> None:
     of_powers = Evaluated(derivation, [sum(derivation.powers.values())])
     solved, _ = evaluated(kind, n)
     drawn = scene(kind, n, 4)
-    rig = Rig(
-        bodies=[Body(x.mass, x.length, x.center, x.inertia) for x in drawn.links],
-        gravity=drawn.gravity,
-        effects=[law((effect.kind, described(effect))) for effect in drawn.effects],
-        arithmetic=multiple_precision(DIGITS),
-    )
+    rig = rig_of(drawn, multiple_precision(DIGITS))
     for state in states(drawn, 4):
         (power,) = of_powers(drawn, state, solved(drawn, state)[:n])
         shares = rig.shares(state.t, list(state.q), list(state.qd))
         assert abs(power - balance(shares)) <= 10 ** (8 - DIGITS) * abs(power)
         assert abs(power) > 1e-6
-
-
-def described(effect: Any) -> dict[str, Any]:
-    """Return the parameters of an effect as the reference takes them."""
-    return {
-        name: x.particulars() if isinstance(x, pc.effects.Part) else x
-        for name, x in effect.particulars().items()
-    }
 
 
 @pytest.mark.parametrize(

@@ -130,14 +130,14 @@ class Turn:
 
 def test_every_run_has_one_turn_a_round_in_an_order_drawn_anew():
     turns = []
-    interleave({name: Turn(name, turns, [1.0] * 8) for name in "abcde"}, range(8), 0.0)
+    interleave({name: Turn(name, turns, [1.0] * 8) for name in "abcde"}, 8, 0.0)
     rounds = ["".join(turns[k : k + 5]) for k in range(0, 40, 5)]
     assert all(sorted(order) == list("abcde") for order in rounds)
     assert len(set(rounds)) > 1
 
 
 def test_timing_keeps_the_least_and_the_median_of_all_rounds():
-    timing = interleave({"a": Turn("a", [], [3.0, 1.0, 2.0, 9.0, 8.0])}, range(5), 0.0)["a"]
+    timing = interleave({"a": Turn("a", [], [3.0, 1.0, 2.0, 9.0, 8.0])}, 5, 0.0)["a"]
     assert (timing.minimum, timing.median, timing.calls) == (1.0, 3.0, 5)
 
 

@@ -10,7 +10,7 @@ import pytest
 from reference import printed_equations as printed
 from reference.arithmetic import multiple_precision
 from reference.dormand_prince import StepTooSmallError, integrate
-from reference.newton_euler import newton_euler, uniform_rod
+from reference.newton_euler import uniform_rod
 from reference.printed_equations import AS_PRINTED, Instant, Pendulum, Repairs
 from reference.rig import Rig
 
@@ -29,7 +29,7 @@ def bodies(p):
 def true_instant(p, gravity, state):
     """Return an instant under Newton's laws; gravity < 0 is the same pendulum with y upward."""
     q1, q2, w1, w2 = state
-    motion = newton_euler(bodies(p), gravity, (q1, q2), (w1, w2))
+    motion = Rig(bodies=bodies(p), gravity=gravity).motion(0, (q1, q2), (w1, w2))
     a1, a2 = motion.accelerations
     x, y = motion.reactions[1]
     return Instant(q1=q1, q2=q2, w1=w1, w2=w2, a1=a1, a2=a2, F21=(-x, -y))

@@ -152,22 +152,29 @@ def test_a_narrow_peak_of_friction_shortens_every_run_by_the_same_time(
 
 
 @pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize("amplitude", [1.03, 1.08, 0.06, 0.7])
+@pytest.mark.parametrize(
+    ("static", "amplitude"),
+    [(0.1, 1.03), (0.1, 1.08), (0.1, 0.06), (0.1, 0.7), (0.2, 1.03), (0.2, 0.06), (0.2, 0.72)],
+)
 def test_a_rod_on_a_spring_with_friction_swings_less_by_the_same_each_time(
-    amplitude: float, side: int, fine: Any
+    static: float, amplitude: float, side: int, fine: Any
 ) -> None:
-    """Turning points A, -(A - 2 tc/k), ...; at rest for good once k abs(A) <= tc."""
+    """Turning points A, -(A - 2 tc/k), ...; at rest for good once k abs(A) <= ts.
+
+    Each half swing passes a peak of friction twice, which takes 2 ts ws of impulse or so.
+    """
     stiffness, coulomb, rest = 2.0, 0.1, 0.3
+    within = 1e-10 if static == coulomb else 1e-5
     spring = fx.TorsionalSpring(joint=1, stiffness=stiffness, rest_angle=rest)
     half = np.pi * np.sqrt(J / stiffness)
     turns = [amplitude]
-    while stiffness * abs(turns[-1]) > coulomb:
+    while stiffness * abs(turns[-1]) > static:
         turns.append(-(turns[-1] - np.sign(turns[-1]) * 2 * coulomb / stiffness))
-    scene = rod(spring, fx.DryJointFriction(1, coulomb=coulomb))
+    scene = rod(spring, friction(coulomb, static, 1e-7, 2.0))
     sol = pc.simulate(scene, q0=rest + side * amplitude, qd0=0, t_span=(0, 20), **fine)
     assert_rests(sol)
-    assert time_of_rest(sol) == pytest.approx(half * (len(turns) - 1), rel=1e-10)
+    assert time_of_rest(sol) == pytest.approx(half * (len(turns) - 1), rel=within)
     at_turns = half * np.arange(len(turns))
-    np.testing.assert_allclose(side * (sol(at_turns)[0] - rest), turns, atol=1e-10)
+    np.testing.assert_allclose(side * (sol(at_turns)[0] - rest), turns, atol=within)
     # No step strides over a turning point.
-    assert np.abs(sol.t - at_turns[:, None]).min(axis=1).max() < 1e-9
+    assert np.abs(sol.t - at_turns[:, None]).min(axis=1).max() < 10 * within

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pendcore as pc
 import pytest
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from pendcore import effects as fx
 from reference.random_rigs import address_of
 from reference.rig import LOSSES
+from swings import time_to
 
 Array = NDArray[np.float64]
 OfTime = Callable[[Array, float], Array]
@@ -202,11 +202,10 @@ def test_bang_bang() -> None:
 @pytest.mark.parametrize("hold", [fx.Lock(joint=2), fx.DryJointFriction(joint=2, coulomb=100.0)])
 @pytest.mark.parametrize("amplitude", [0.3, 2.0])
 def test_two_rods_held_straight_swing_as_one_of_twice_the_length(amplitude: float, hold) -> None:
-    parameter = mpmath.sin(mpmath.mpf(amplitude) / 2) ** 2
-    period = float(4 * mpmath.ellipk(parameter) * mpmath.sqrt(mpmath.mpf(4) * L / (3 * G)))
+    quarter = float(time_to(0, amplitude, G, 2 * L))
     scene = rod(hold, gravity=G, links=2)
-    sol = solve(scene, DOWN - amplitude, 0.0, 2 * period)
-    quarters = period / 4 * np.arange(9)
+    quarters = quarter * np.arange(9)
+    sol = solve(scene, DOWN - amplitude, 0.0, quarters[-1])
     q = (sol(quarters) - DOWN) / amplitude
     np.testing.assert_allclose(q[0], np.tile([-1, 0, 1, 0], 3)[:9], atol=1e-9)
     np.testing.assert_array_equal(sol.q[:, 0], sol.q[:, 1])

@@ -6,7 +6,6 @@ import pickle
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -161,20 +160,6 @@ def test_a_table_is_right_to_its_last_digits_wherever_in_time_it_lies(begin: flo
             found = Fraction(scene.accelerations(t, [0.0], [0.0]).item())
             off = found - Fraction(0.125) - sum(torque_of(table, t) for table in tables)
             assert abs(off) <= 4 * np.finfo(float).eps
-
-
-def test_tables_that_hold_or_step_come_back_from_files(tmp_path: Path) -> None:
-    scene = rod(LAWS["held"], LAWS["steps"])
-    case = pc.Case(scene=scene, q0=0.1, t_span=(0, 1))
-    assert "torque = [1.0, -2.0, 0.5, -0.25, 7.0], hold = true}" in case.to_toml()
-    assert pc.read_case(case.to_toml()).scene == scene
-    assert pickle.loads(pickle.dumps(scene)) == scene
-    sol = case.simulate()
-    sol.save(tmp_path / "run.npz")
-    again = pc.load(tmp_path / "run.npz")
-    assert again.scene == scene
-    assert np.array_equal(again.resume(2.5).y, sol.resume(2.5).y)
-    assert repr(scene.effects[0]).endswith("hold=True))")
 
 
 def test_a_function_is_not_called_at_its_breaks_nor_beyond_them_in_a_step() -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from described_scenes import scene_of
+from described_scenes import rig_of, scene_of
 from numpy.typing import NDArray
 from pendcore import _core
 from pendcore import effects as fx
-from reference.effects import Described, law
+from reference.effects import Described
 from reference.newton_euler import Body, uniform_rod
 from reference.random_rigs import address_of, polynomial
-from reference.rig import LOSSES, Rig
+from reference.rig import LOSSES
 
 Array = NDArray[np.float64]
 
@@ -134,7 +134,7 @@ def test_the_balance_closes_with_an_effect_alone(kind: str) -> None:
 def test_every_entry_is_the_integral_of_its_power() -> None:
     """Integrate the reference's powers along the motion that was found, by Gauss and Legendre."""
     sol = simulate(ALL, t_end=2.0)
-    rig = Rig(bodies=BODIES, gravity=G, effects=[law(one) for one in ALL])
+    rig = rig_of(sol.scene)
     # Breaks of a power, in its derivative at least: the table's, and where the servo meets its
     # limit; the steps end there, so panels made of steps are smooth inside.
     places, weights = np.polynomial.legendre.leggauss(4)

@@ -8,7 +8,6 @@ import gc
 import pickle
 import re
 import subprocess
-import threading
 import weakref
 from pathlib import Path
 
@@ -202,19 +201,17 @@ def test_ctrl_c_in_a_function_interrupts():
     assert interrupt.value.solution.message.startswith("interrupted: ")
 
 
-def test_forces_that_are_no_numbers_end_the_run_and_say_when():
-    own = fx.User(lambda t, q, qd: damp(t, q, qd) if t < 1 else [np.nan, 0.0])
-    broken = run(own, on_failure="ignore")
-    assert broken.status in ("non_finite", "step_too_small")
-    assert 0.9 < broken.t[-1] < 1.1
-
-
-@pytest.mark.parametrize("limit", [{"max_steps": 2000}, {"time_limit": 0.5}])
+@pytest.mark.parametrize(
+    "limit",
+    [{"max_steps": 2000}, {"max_steps": 10_000, "method": "dopri5"}, {"time_limit": 0.5}],
+)
 def test_a_run_that_creeps_at_a_jump_of_a_law_says_so(limit):
     sign = fx.User(lambda t, q, qd: -0.5 * np.sign(qd))
     scene = pc.Scene(links=[ROD, ROD], effects=[sign])
     sol = pc.simulate(scene, (0, 5), np.pi / 2, [0.1, 0.0], on_failure="ignore", **limit)
+    assert sol.status == next(iter(limit))
     assert "a law of yours may jump, as sign(w) does" in sol.message
+    assert "DryJointFriction" in sol.message
 
 
 def test_a_function_lives_as_long_as_what_runs_under_it():
@@ -253,20 +250,6 @@ def test_a_compiled_function_is_kept_alive_through_replace():
     assert varied.data == 5
 
 
-def test_threads_share_a_scene_with_a_function():
-    shared, results = scene(fx.User(damp)), []
-    threads = [
-        threading.Thread(target=lambda: results.append(pc.simulate(shared, **START).y))
-        for _ in range(3)
-    ]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert len(results) == 3
-    assert all(np.array_equal(y, results[0]) for y in results)
-
-
 @pytest.mark.parametrize("effect", [fx.User(damp), fx.CompiledUser(compiled_damp)], ids=["py", "c"])
 def test_what_cannot_be_kept_says_so_by_name(effect, tmp_path):
     own, name = scene(effect), type(effect).__name__
@@ -276,10 +259,12 @@ def test_what_cannot_be_kept_says_so_by_name(effect, tmp_path):
         lambda: pickle.dumps(own),
         lambda: pickle.dumps(sol),
         lambda: pc.Case(scene=own, **START).to_toml(),
-        lambda: sol.save(tmp_path / "run.npz"),
     ):
         with pytest.raises(TypeError, match=rf"{name}.*function"):
             keep()
+    kept_so = r"cannot be saved: a function .*sol\.to_pandas\(\) or numpy\.savez\("
+    with pytest.raises(TypeError, match=rf"{name}.*{kept_so}"):
+        sol.save(tmp_path / "run.npz")
     assert [*tmp_path.iterdir()] == []
     with pytest.raises(SyntaxError):
         eval(repr(effect))
@@ -293,11 +278,12 @@ def test_tables_have_no_case_of_a_function():
     assert "case" in pc.simulate(scene(), **START).to_pandas().attrs
 
 
-def test_a_function_that_gives_no_number_is_named_from_the_start_on() -> None:
+@pytest.mark.parametrize("how", [{}, {"method": "radau5", "step": 0.01}])
+def test_a_function_that_gives_no_number_is_named_from_the_start_on(how) -> None:
     for begin in (0.0, 1.0):
         law = fx.User(lambda t, q, qd, begin=begin: np.full(2, np.nan if t >= begin else 0.0))
         scene = pc.Scene.textbook().replace(effects=[fx.Payload(mass=0.1), law])
-        sol = pc.simulate(scene, (0, 5), 1.0, on_failure="ignore")
+        sol = pc.simulate(scene, (0, 5), 1.0, on_failure="ignore", **how)
         assert sol.status == "non_finite"
-        assert sol.t_reached == pytest.approx(begin, abs=1e-6)
+        assert sol.t_reached == pytest.approx(begin, abs=2 * how.get("step", 5e-7))
         assert "qd_1, by effect 2 (user)" in sol.message

@@ -29,10 +29,13 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
+
+from page_part import rewrite
+
 ROOT = Path(__file__).parents[2]
 RECORDED = ROOT / "tests/cpp/trajectory_hash.txt"
 TOOLCHAINS = ROOT / "cpp/cmake/machines"
-BEGIN, END = "<!-- elsewhere: begin -->\n", "<!-- elsewhere: end -->"
 FMA_CASES = 10_000_000
 PROCESSORS = {"aarch64": "ARM, 64 bits", "riscv64": "RISC-V, 64 bits", "s390x": "IBM Z, big-endian"}
 WEBASSEMBLY = "wasm32"
@@ -190,8 +193,7 @@ def main() -> int:
             print(one.wrong)
     fine = all(one.is_right() for one in machines)
     if asked.page and fine:
-        before, _, rest = asked.page.read_text().partition(BEGIN)
-        asked.page.write_text(before + BEGIN + table(plain) + END + rest.partition(END)[2])
+        rewrite(asked.page, elsewhere=table(plain))
     return 0 if fine else 1
 
 

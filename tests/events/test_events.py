@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import mpmath
 import numpy as np
 import pendcore as pc
 import pytest
@@ -10,6 +9,7 @@ from pendcore import _core
 from pendcore import effects as fx
 from pendcore import events as ev
 from reference.rounding import of_dense_output, of_new_state
+from swings import period_of, time_to
 from turning_rod import directions, times, turning
 from unit_rods import rod
 
@@ -184,25 +184,15 @@ def test_a_rod_at_rest_has_no_event():
 # Swings -----------------------------------------------------------------------------------------
 
 
-def swing(amplitude, mark=0.0):
-    """The period of a swing from -amplitude, and when it first passes the mark."""
-    with mpmath.mp.workdps(30):
-        k = mpmath.sin(mpmath.mpf(amplitude) / 2)
-        unit = mpmath.sqrt(2 / (3 * mpmath.mpf(G)))
-        quarter = mpmath.ellipk(k**2) * unit
-        past = mpmath.ellipf(mpmath.asin(mpmath.sin(mpmath.mpf(mark) / 2) / k), k**2) * unit
-        return float(4 * quarter), float(quarter + past)
-
-
 @pytest.mark.few_cases
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("short", [1e-2, 1e-5, 1e-8, -1e-9])
 def test_both_passages_of_a_mark_just_short_of_the_turn_are_found_in_every_swing(short, sign, fine):
     """At 1e-8 rad short of the turn the passages are 0.12 ms apart, in steps of tens of ms."""
-    period, first = swing(1.0, 1.0 - max(short, 0.0))
-    known = [n * period + t for n in range(20) for t in (first, period - first)]
+    whole, first = float(period_of(1.0, G)), float(time_to(max(short, 0.0) - 1.0, 1.0, G))
+    known = [n * whole + t for n in range(20) for t in (first, whole - first)]
     mark = ev.JointAngle(joint=1, value=np.pi / 2 - (1.0 - short))
-    span = 0, sign * 20 * period
+    span = 0, sign * 20 * whole
     sol, without = (
         pc.simulate(rod(gravity=G), span, np.pi / 2 + 1.0, events=events, **fine)
         for events in ([mark], [])
@@ -220,10 +210,10 @@ def test_a_rod_swings_with_the_period_of_elliptic_integrals(sign, fine):
     wanted = [ev.LinkAngle(1, np.pi / 2), *RATES, ev.TipLine((0.0, 0.0), (1.0, 0.0))]
     fine = fine | {"rtol": 1e-13, "atol": 1e-15}
     sol = pc.simulate(rod(gravity=G), (0, sign * 10), np.pi / 2 - 2.5, events=wanted, **fine)
-    period, (through, turns, also, line) = swing(2.5)[0], sol.events
-    passed = period * (np.arange(int(20 / period + 0.5)) + 0.5) / 2
+    half, (through, turns, also, line) = float(period_of(2.5, G)) / 2, sol.events
+    passed = half * (np.arange(int(10 / half + 0.5)) + 0.5)
     assert times(through) == pytest.approx(sign * passed, abs=2e-10)
-    turned = period * (np.arange(int(20 / period)) + 1) / 2
+    turned = half * (np.arange(int(10 / half)) + 1)
     assert times(turns) == times(also) == pytest.approx(sign * turned, abs=2e-10)
     assert times(line) == pytest.approx(times(through), abs=1e-14)
     assert directions(through)[:2] == [1, -1]

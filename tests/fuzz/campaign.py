@@ -29,9 +29,12 @@ from fuzz.drawn_run import drawn
 from fuzz.shrinking import breaches_alone, kind, shrunk
 from fuzz.verdict import Verdict, of_number, seed_of
 
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
+
+from page_part import rewrite
+
 FULL = 100_000
 """Cases that a campaign has to have run for the page to be written."""
-BEGIN, END = "<!-- campaign: begin -->\n", "<!-- campaign: end -->"
 SHOWN = 3
 """Cases of one kind of failure that are made small."""
 
@@ -72,9 +75,7 @@ def main(arguments: list[str] | None = None) -> int:
     if asked.page and asked.cases >= FULL:
         record = record_of(asked, told, seconds)
         asked.record.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-        before, _, rest = asked.page.read_text(encoding="utf-8").partition(BEGIN)
-        shown = before + BEGIN + tables(record) + END + rest.partition(END)[2]
-        asked.page.write_text(shown, encoding="utf-8")
+        rewrite(asked.page, campaign=tables(record))
     print(report)
     return 1 if told.failed else 0
 

@@ -148,12 +148,3 @@ def test_methods_that_cannot_are_refused_by_name(method):
 def test_compensated_must_be_true_or_false(wrong):
     with pytest.raises(TypeError, match=r"^compensated = "):
         pc.simulate(BOOK, (0, 0.1), 0.8, compensated=wrong)
-
-
-def test_a_case_keeps_compensated(tmp_path):
-    case = pc.Case(scene=BOOK, q0=0.8, t_span=(0, 1), options={"compensated": True})
-    assert "compensated = true\n" in case.to_toml()
-    sol = case.simulate()
-    assert sol.case().options == case.options | {"method": "taylor-radau5"}
-    sol.save(tmp_path / "run.npz")
-    assert pc.load(tmp_path / "run.npz").case() == sol.case()

@@ -184,14 +184,6 @@ def test_a_pendulum_has_no_fast_mode_however_long_it_runs(method):
     assert sol.message == "reached the end of the interval"
 
 
-def test_a_law_of_the_users_that_jumps_is_told_what_has_the_jump():
-    rub = fx.User(lambda t, q, qd: -0.5 * np.sign(qd))
-    how = {"method": "dopri5", "max_steps": 10_000, "on_failure": "ignore"}
-    sol = run([rub], 20, [1.5, 1.4], **how)
-    assert sol.status == "max_steps"
-    assert "DryJointFriction" in sol.message
-
-
 def test_functions_of_the_users_are_said_to_be_differentiated_by_differences():
     sol = run([fx.User(lambda t, q, qd: -0.1 * qd)], 0.1, method="radau5")
     assert "derivatives of effect 1 (user) by differences" in sol.message

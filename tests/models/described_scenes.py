@@ -1,4 +1,4 @@
-"""Scenes of the core made from what the reference describes."""
+"""Scenes of the core made from what the reference describes, and the other way round."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pendcore as pc
-from reference.effects import Described
+from reference.arithmetic import DOUBLE, Arithmetic
+from reference.effects import Described, law
 from reference.newton_euler import Body
+from reference.rig import Rig
 
 
 def effect_of(described: Described) -> Any:
@@ -40,3 +42,16 @@ def scene_of(
             gravity=gravity,
             effects=[effect_of(one) for one in described],
         )
+
+
+def rig_of(scene: pc.Scene, arithmetic: Arithmetic = DOUBLE) -> Rig:
+    """Make what the reference takes of a scene."""
+    laws = []
+    for effect in scene.effects:
+        told = {
+            name: value.particulars() if isinstance(value, pc.effects.Part) else value
+            for name, value in effect.particulars().items()
+        }
+        laws.append(law((effect.kind, told)))
+    bodies = [Body(x.mass, x.length, x.center, x.inertia) for x in scene.links]
+    return Rig(bodies=bodies, gravity=scene.gravity, effects=laws, arithmetic=arithmetic)

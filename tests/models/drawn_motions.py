@@ -1,7 +1,7 @@
 """Runs of ordinary scenes for hypothesis, short enough that rounding stays rounding.
 
 Chaos multiplies a difference of rounding by e every Lyapunov time; over a second of chains of about
-a metre that is a factor of a thousand or so. `any_runs` has the wild runs.
+a metre that is a factor of a thousand or so. `fuzz.drawn_run` has the wild runs.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pendcore as pc
-from fuzz import drawn_run
 from fuzz.choices import Choices, FromHypothesis, FromSeed
 from fuzz.drawn_run import Drawn
 from fuzz.drawn_scene import SceneMaker
@@ -27,15 +26,6 @@ UNDAMPED = ("torsional_spring", "motor", "rotor_inertia", "payload", "lock", "dr
 """Smooth effects under which a difference does not grow backward, as it does under damping."""
 LOSSLESS = ("torsional_spring", "rotor_inertia", "payload", "lock")
 """Effects that are the same in reversed time."""
-
-
-@st.composite
-def any_runs(draw: st.DrawFn) -> Drawn:
-    """Whatever the campaign runs; see `fuzz.drawn_run`."""
-    try:
-        return drawn_run.drawn(FromHypothesis(draw))
-    except ValueError:
-        reject()
 
 
 INTERVALS = {
@@ -179,3 +169,10 @@ def motion_of_seed(seed: str, kind: str) -> Drawn:
 def stopped_motion_of_seed(seed: str) -> Drawn:
     """Return a motion with stops."""
     return _of_seed(seed, stopped_motion)
+
+
+def at_fifths(run: Drawn, **changes: Any) -> np.ndarray:
+    """Return the states at fifths of the span; the run must get there."""
+    sol = run.simulate(**changes)
+    assert sol.success, sol.message
+    return sol(np.linspace(*run.t_span, 6))

@@ -50,6 +50,7 @@ options = st.fixed_dictionaries(
         "max_steps": st.integers(1, 10**18),
         "progress": st.booleans(),
         "ledger": st.booleans(),
+        "compensated": st.booleans(),
     },
 )
 
@@ -135,13 +136,16 @@ def test_a_case_may_be_written_in_several_ways(way, end, tmp_path):
 
 def test_effects_are_tables_of_their_kind_in_their_order_without_what_is_as_by_default():
     payload = '[[effect]]\nkind = "payload"\nmass = 2\n'
-    case = pc.read_case(TEXTBOOK + MOTOR + DAMPED + payload)
+    table = "table = {t = [0.0, 1.0], torque = [1.0, 2.0], hold = true}\n"
+    held = MOTOR[: MOTOR.index("sinusoid")] + table
+    case = pc.read_case(TEXTBOOK + MOTOR + DAMPED + held + payload)
     assert case.scene.effects == (
         fx.Motor(joint=2, sinusoid=fx.Sinusoid(amplitude=1.0, angular_frequency=6.0)),
         fx.ViscousJoint(joint=1, damping=0.1),
+        fx.Motor(joint=2, table=fx.Table([0.0, 1.0], [1.0, 2.0], hold=True)),
         fx.Payload(mass=2.0),
     )
-    assert f"{MOTOR}\n{DAMPED}\n" in case.to_toml()
+    assert f"{MOTOR}\n{DAMPED}\n{held}\n" in case.to_toml()
 
 
 def test_options_are_simulates_keywords_and_cannot_be_changed():

@@ -16,7 +16,7 @@ from fuzz.readers import READERS, finding, read_archive, read_case, whole_archiv
 from fuzz.verdict import Verdict
 from sweeps import random_examples
 
-CASES = random_examples(400)
+CASES = random_examples(1000)
 SEED = "ci"
 
 

@@ -35,6 +35,7 @@ def same(a, b):
         and np.array_equal(a.t, b.t)
         and np.array_equal(a.y, b.y)
         and (a.store != "dense" or np.array_equal(a(between), b(between)))
+        and all(np.array_equal(a._run.ledger[x], b._run.ledger[x]) for x in a._run.ledger)
         and (a.status, a.message, a.stats, a.case()) == (b.status, b.message, b.stats, b.case())
     )
 
@@ -121,6 +122,9 @@ def test_found_events_are_a_list_that_has_arrays():
     assert none.q.shape == (0, 2)
 
 
+WITH_LEDGER = [fx.ViscousJoint(1, 0.3), fx.Motor(2, sinusoid=fx.Sinusoid(2.0, 6.0))]
+
+
 def break_off(fraction):
     raise LookupError
 
@@ -147,11 +151,16 @@ def test_the_case_of_a_solution_gives_the_same_solution(sol):
 
 
 @pytest.mark.parametrize("store", ["dense", "steps", "times", "end"])
-@pytest.mark.parametrize("way", ["pickle", "deepcopy", "npz"])
-def test_a_solution_comes_back_whole(store, way, tmp_path):
-    t_eval = [0.25, 0.5, 1.0] if store == "times" else None
-    first = pc.simulate(SCENE, q0=0.3, t_span=(0, 1), store=store, t_eval=t_eval, rtol=[1e-8] * 4)
-    if way == "npz":
+@pytest.mark.parametrize("way", ["pickle", "deepcopy", "npz", "case"])
+@pytest.mark.parametrize("effects", [[], WITH_LEDGER], ids=["bare", "with a ledger"])
+@pytest.mark.parametrize("compensated", [False, True])
+def test_a_solution_comes_back_whole(store, way, effects, compensated, tmp_path):
+    how = {"store": store, "rtol": [1e-8] * 4, "ledger": bool(effects), "compensated": compensated}
+    how["t_eval"] = [0.25, 0.5, 1.0] if store == "times" else None
+    first = pc.simulate(SCENE.replace(effects=effects), q0=0.3, t_span=(0, 1), **how)
+    if way == "case":
+        again = first.case().simulate()
+    elif way == "npz":
         first.save(tmp_path / "run.npz")
         again = pc.load(tmp_path / "run.npz")
     else:

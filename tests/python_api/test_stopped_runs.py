@@ -142,13 +142,6 @@ def test_an_attempt_that_is_given_up_at_any_place_leaves_no_trace(case):
     assert sol.stats == whole.stats or case == "sliding"
 
 
-def test_a_law_that_gives_no_number_is_not_called_an_equation_without_solution():
-    scene = under(lambda t, q, qd: np.full(2, np.nan if t > 0.5 else 0.0), links=2)
-    how = {"method": "radau5", "step": 0.01, "on_failure": "ignore"}
-    sol = pc.simulate(scene.replace(gravity=9.807), q0=1.0, t_span=(0, 1), **how)
-    assert sol.status == "non_finite"
-
-
 SWING = {"q0": [np.pi / 4, np.pi / 3], "t_span": (0, 5)}
 SPINNING = pc.Scene(links=[ROD], gravity=0.0)
 OVER = [pc.events.LinkAngle(1, 0.0, every_turn=True)]

@@ -188,14 +188,6 @@ def test_a_file_behind_a_link_and_a_pipe_are_written_where_they_are():
     assert not Path("/dev/null").is_file()
 
 
-def test_a_run_under_a_function_is_not_saved_and_says_how_to_keep_its_numbers():
-    scene = BOOK.scene.replace(effects=[pc.effects.User(lambda t, q, qd: 0 * q)])
-    sol = pc.simulate(scene, q0=1.0, t_span=(0, 1))
-    with pytest.raises(TypeError, match=r"cannot be saved: .*sol\.to_pandas\(\) or numpy\.savez\("):
-        sol.save("run.npz")
-    assert listed() == []
-
-
 # Threads that write to one path ------------------------------------------------------------------
 
 

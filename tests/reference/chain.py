@@ -10,7 +10,8 @@ import numpy as np
 from reference import dormand_prince, radau_steps
 from reference.arithmetic import COMPLEX, DOUBLE, Arithmetic
 from reference.dormand_prince import Array
-from reference.newton_euler import newton_euler
+from reference.effects import ViscousJoint
+from reference.rig import Rig
 from reference.trajectories import Trajectory
 
 
@@ -18,15 +19,12 @@ def right_hand_side(
     case: Trajectory, arithmetic: Arithmetic = DOUBLE
 ) -> Callable[[float, Any], Any]:
     """Return dy/dt of the state q_1..q_n, qd_1..qd_n."""
-    bodies, n = case.bodies, len(case.masses)
+    dampers = [ViscousJoint(joint=j, damping=b) for j, b in enumerate(case.damping, start=1) if b]
+    rig = Rig(bodies=case.bodies, gravity=case.gravity, effects=dampers, arithmetic=arithmetic)
 
-    def rates(_: float, y: Any) -> Any:
-        q, qd = y[:n].tolist(), y[n:]
-        couples = (-case.damping * np.diff(qd, prepend=0.0)).tolist()
-        motion = newton_euler(
-            bodies, case.gravity, q, qd.tolist(), couples=couples, arithmetic=arithmetic
-        )
-        return np.concatenate([qd, motion.accelerations])
+    def rates(t: float, y: Any) -> Any:
+        q, qd = np.split(y, 2)
+        return np.concatenate([qd, rig.motion(t, q.tolist(), qd.tolist()).accelerations])
 
     return rates
 

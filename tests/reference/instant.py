@@ -46,11 +46,14 @@ class Instant:
     t: Number = 0.0
     pivot: PivotMotion = AT_REST
     arithmetic: Arithmetic = DOUBLE
+    directions: list[Vector] = field(init=False)
     joints: list[Place] = field(init=False)
     """The pivot, the joints, the tip."""
 
     def __post_init__(self) -> None:
-        number = self.arithmetic.number
+        number, of = self.arithmetic.number, self.arithmetic
+        along = [(of.cos(angle), of.sin(angle)) for angle in map(number, self.q)]
+        object.__setattr__(self, "directions", along)
         place = Place(*map(number, (*self.pivot.position, *self.pivot.velocity)))
         object.__setattr__(self, "joints", [place])
         for link, body in enumerate(self.bodies, start=1):
@@ -58,8 +61,7 @@ class Instant:
 
     def along(self, link: int) -> Vector:
         """Unit vector from the nearer joint of a link to the farther one."""
-        angle = self.arithmetic.number(self.q[link - 1])
-        return self.arithmetic.cos(angle), self.arithmetic.sin(angle)
+        return self.directions[link - 1]
 
     def across(self, link: int) -> Vector:
         """Unit vector in which the link moves as its angle grows."""

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.arithmetic import DOUBLE, Arithmetic, Number
+from reference.arithmetic import Arithmetic, Number
 from reference.loads import Loads, Sum, Vector
 
 
@@ -101,7 +101,11 @@ def chain_equations(
     loads: Loads,
     arithmetic: Arithmetic,
 ) -> Equations:
-    """Write the equations of every link, payload and locked joint."""
+    """Write the equations of every link, payload and locked joint, from the ground to the tip.
+
+    Gravity pulls towards +y, m/s^2; q are absolute angles from +x towards +y, rad, and qd their
+    rates, rad/s.
+    """
     number, zero, one = arithmetic.number, arithmetic.number(0), arithmetic.number(1)
     links = [Body(*map(number, body)) for body in bodies]
     n, g = len(links), number(gravity)
@@ -174,30 +178,6 @@ def chain_equations(
         if joint > 1:
             row[joint - 2] = -one
     return Equations(matrix, right)
-
-
-def newton_euler(
-    bodies: Sequence[Body],
-    gravity: float,
-    q: Sequence[float],
-    qd: Sequence[float],
-    *,
-    couples: Sequence[float] | None = None,
-    loads: Loads | None = None,
-    arithmetic: Arithmetic = DOUBLE,
-) -> Motion:
-    """Solve the Newton-Euler equations of a chain, whose links go from the ground to the tip.
-
-    Gravity pulls towards +y, m/s^2; q are absolute angles from +x towards +y, rad, and qd their
-    rates, rad/s. There is a couple, N m, at each joint on the link beyond it, and its opposite on
-    the link before; they are added to the loads, which act besides.
-    """
-    n, number = len(bodies), arithmetic.number
-    loads = Loads(n) if loads is None else loads
-    for joint, couple in enumerate(couples if couples is not None else (), start=1):
-        loads.couple_at_joint(joint, number(couple))
-    unknowns = chain_equations(bodies, gravity, q, qd, loads, arithmetic).solve(arithmetic)
-    return motion_of(unknowns, bodies, q, qd, loads, arithmetic)
 
 
 def motion_of(

@@ -171,17 +171,6 @@ def _linear_system(residuals: Residuals, q: Force, qd: Force) -> tuple[Matrix, l
     return matrix, [-constant[0], -constant[1]]
 
 
-def printed_mass_matrix(p: Pendulum, q: Force, repairs: Repairs = AS_PRINTED) -> Matrix:
-    """Coefficients of the accelerations in (2.10) and (2.11)."""
-    weightless = Pendulum(m1=p.m1, m2=p.m2, L1=p.L1, L2=p.L2, g=0.0)
-    matrix, _ = _linear_system(
-        lambda s: (equation_2_10(weightless, s, repairs), equation_2_11(weightless, s, repairs)),
-        q,
-        (0.0, 0.0),
-    )
-    return matrix
-
-
 def printed_accelerations(
     p: Pendulum, q: Force, qd: Force, repairs: Repairs = AS_PRINTED
 ) -> tuple[float, float]:

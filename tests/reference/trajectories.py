@@ -52,11 +52,6 @@ def _cases() -> dict[str, dict[str, Any]]:
     return cases
 
 
-def names() -> list[str]:
-    """Return the names of all cases."""
-    return list(_cases())
-
-
 def trajectory(name: str) -> Trajectory:
     """Read the case of that name."""
     case = _cases()[name]

@@ -14,10 +14,12 @@ from pathlib import Path
 import numpy as np
 import pendcore as pc
 import pytest
-from mpmath import mp, mpf
+from described_scenes import rig_of
 from pendcore import effects as fx
+from reference.arithmetic import multiple_precision
 from sweeps import random_examples, spread
 
+FIFTY = multiple_precision(50)
 EPS = float(np.finfo(float).eps)
 REPORTED = json.loads(
     (Path(__file__).parents[1] / "data/captures_that_gave_energy.json").read_text()
@@ -31,33 +33,18 @@ def scene_of(links, effects, gravity):
         return pc.Scene(links=made, gravity=gravity, effects=effects)
 
 
-def kinetic(scene, normals, qd):
-    """The energy of mass centres, links, payload and rotors; link i turns along normals[i]."""
-    vx = vy = twice = mpf(0)
-    for link, (nx, ny), w in zip(scene.links, normals, qd, strict=True):
-        cx, cy = vx + link.center * w * nx, vy + link.center * w * ny
-        twice += link.mass * (cx**2 + cy**2) + link.inertia * w**2
-        vx, vy = vx + link.length * w * nx, vy + link.length * w * ny
-    for e in scene.effects:
-        if isinstance(e, fx.Payload):
-            twice += e.mass * (vx**2 + vy**2)
-        if isinstance(e, fx.RotorInertia):
-            twice += e.armature * (qd[e.joint - 1] - (qd[e.joint - 2] if e.joint > 1 else 0)) ** 2
-    return twice / 2
-
-
 def energy(scene, q, qd):
     """Return the kinetic energy, and how much rounding the rates may change it."""
-    with mp.workdps(50):
-        normals = [(-mp.sin(mpf(float(a))), mp.cos(mpf(float(a)))) for a in q]
-        qd = [mpf(float(w)) for w in qd]
-        whole = kinetic(scene, normals, qd)
-        terms = []  # p_i qd_i, as T is quadratic: T(qd + its i-th part) - T(qd) - T(that part)
-        for i, w in enumerate(qd):
-            doubled = [*qd[:i], 2 * w, *qd[i + 1 :]]
-            alone = [w if k == i else mpf(0) for k in range(len(qd))]
-            terms.append(kinetic(scene, normals, doubled) - whole - kinetic(scene, normals, alone))
-        return whole, EPS * float(sum(map(abs, terms)))
+    rig = rig_of(scene, FIFTY)
+
+    def kinetic(rates):
+        return rig.energy(0, q, rates).kinetic
+
+    whole = kinetic(qd)
+    terms = 0  # p_i qd_i, as T is quadratic: T(qd + its i-th part) - T(qd) - T(that part)
+    for alone in np.diag(qd):
+        terms += abs(kinetic(qd + alone) - whole - kinetic(alone))
+    return whole, EPS * float(terms)
 
 
 def assert_lost(scene, q, before, after, booked):

@@ -253,23 +253,6 @@ def test_rest_that_lasts_is_told_without_a_reservation():
 # Comes to rest ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("amplitude", [1.03, 0.06, 0.72])
-def test_a_rod_on_a_spring_rests_for_good_where_the_spring_cannot_move_it(amplitude, fine):
-    """Static friction of twice the sliding one: it rests once k abs(A) <= ts."""
-    k, coulomb = 2.0, 0.1
-    spring = fx.TorsionalSpring(joint=1, stiffness=k, rest_angle=0.3)
-    friction = rubbed(coulomb, static=2 * coulomb, stribeck_velocity=1e-7)
-    turns = [amplitude]
-    while k * abs(turns[-1]) > 2 * coulomb:
-        turns.append(-(turns[-1] - np.sign(turns[-1]) * 2 * coulomb / k))
-    sol = solve(rod(spring, friction), 0.3 + amplitude, 0, 100, **fine)
-    assert sol.status == "at_rest"
-    # each half swing passes the peak of friction twice, which takes 2 ts ws of impulse or so
-    assert sol.q[-1, 0] - 0.3 == pytest.approx(turns[-1], abs=1e-5)
-    assert sol.qd[-1, 0] == 0.0
-    assert time_of_rest(sol) == pytest.approx(np.pi / np.sqrt(k) * (len(turns) - 1), abs=1e-4)
-
-
 def test_friction_that_stops_the_rod_at_the_end_never_stops_it_later():
     """It slides for w0/tc: whether the run finishes there or finds rest is a matter of a bit."""
     for w0, coulomb in np.random.default_rng(4).uniform(0.1, 10, (200, 2)):

@@ -9,12 +9,10 @@ from __future__ import annotations
 import numpy as np
 import pendcore as pc
 import pytest
-from described_scenes import scene_of
+from described_scenes import rig_of, scene_of
 from pendcore import effects as fx
 from reference.arithmetic import multiple_precision
-from reference.effects import law
 from reference.newton_euler import Body
-from reference.rig import Rig
 from unit_rods import rod
 
 FORTY = multiple_precision(40)
@@ -131,8 +129,7 @@ def test_views_of_rods_in_the_wind_on_a_moving_pivot_are_those_of_the_reference(
         scene_of(bodies, 9.81, described), (knots[0], knots[-1]),
         np.linspace(0.3, 1.0, n), np.linspace(2.0, -3.0, n), t_eval=times, max_steps=10_000,
     )  # fmt: skip
-    laws = [law(one) for one in described]
-    rig = Rig(bodies=bodies, gravity=9.81, effects=laws, arithmetic=FORTY)
+    rig = rig_of(sol.scene, FORTY)
     energy, accelerations, reactions = sol.energy(), sol.accelerations(), sol.reactions()
     for i, (t, q, qd) in enumerate(zip(sol.t, sol.q, sol.qd, strict=True)):
         motion, exact = rig.motion(t, q, qd), rig.energy(t, q, qd)

@@ -28,7 +28,9 @@ from true_error.families import FAMILIES
 from true_error.judge import SECONDS, Verdict, judged
 from true_error.report import broken, markdown, offenders, record_of
 
-BEGIN, END = "<!-- true error: begin -->\n", "<!-- true error: end -->"
+sys.path.append(str(Path(__file__).parents[2] / "docs/generators"))
+
+from page_part import rewrite
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -69,9 +71,7 @@ def main(arguments: list[str] | None = None) -> int:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(json.dumps(content, indent=1) + "\n")
     if asked.page:
-        before, _, rest = asked.page.read_text().partition(BEGIN)
-        shown = before + BEGIN + markdown(record) + END + rest.partition(END)[2]
-        asked.page.write_text(shown)
+        rewrite(asked.page, true_error=markdown(record))
     failures = [f"{name}: {claim}" for name, of_it in found.items() for claim in broken(of_it)]
     print(*failures, sep="\n")
     return 1 if failures else 0

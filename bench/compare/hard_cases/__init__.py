@@ -11,14 +11,10 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-PROJECT = Path(__file__).parents[3]
-# References that share no code with the core.
-sys.path += [str(PROJECT / "tests"), str(PROJECT / "tests/models")]
+from machine import machine
+from record import Point, Record
 
-from machine import machine  # noqa: E402
-from record import Point, Record  # noqa: E402
-
-from hard_cases.outcome import Absent, Outcome, run_bounded  # noqa: E402
+from hard_cases.outcome import Absent, Outcome, run_bounded
 
 CASES: dict[str, Any] = tomllib.loads((Path(__file__).parent / "cases.toml").read_text("utf-8"))
 FACTS: dict[str, Any] = {

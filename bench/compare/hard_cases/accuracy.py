@@ -7,10 +7,9 @@ from functools import cache
 from math import cos, pi, sin
 from typing import Any
 
-import mpmath
 import numpy as np
 from cases import Array
-from mpmath import ellipk, mp, mpf, sqrt
+from swings import period_of, time_of_fall
 from trajectory_error import energy
 
 from hard_cases.outcome import Outcome
@@ -114,19 +113,8 @@ class Upright(Scene):
 
     @cache  # noqa: B019
     def fall_time(self) -> float:
-        """Return when link 1 or 2 is 1 rad off, in 25 digits, from the exact double start."""
-        with mp.workdps(25):
-            rates = two_rods(of=mpmath, one=mpf(1))
-            motion = mpmath.odefun(rates, 0, [*map(mpf, self.start), 0, 0])
-
-            def off(t: Any) -> Any:
-                return max(abs(x - mpf(UPRIGHT)) for x in motion(t)[:2]) - 1
-
-            t = mpf(1)
-            while off(t) < 0:
-                t += mpf(1) / 10
-            bracket = (t - mpf(1) / 10, t)
-            return float(mpmath.findroot(off, bracket, solver="anderson", tol=1e-30))
+        """Return when link 1 or 2 is 1 rad off, from the exact double start."""
+        return time_of_fall(2, self.start[0], G)
 
     def reference(self) -> dict[str, list[float]]:
         return {"t": [self.fall_time()]}
@@ -174,9 +162,7 @@ class Separatrix(Scene):
     amplitude = float(2 * np.arcsin(0.999999))
     zero, sign, start = HANGING, -1.0, (amplitude,)
     settings = {"mujoco": {"fitted": True}}  # noqa: RUF012
-    with mp.workdps(30):
-        modulus = mpmath.sin(mpf(amplitude) / 2)
-        span = (0.0, float(4 * ellipk(modulus**2) * sqrt(2 / (3 * mpf(G)))))
+    span = (0.0, float(period_of(amplitude, G)))
 
     @property
     def numbers(self) -> dict[str, float]:

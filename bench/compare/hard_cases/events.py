@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from cases import Array
-from mpmath import asin, ellipf, ellipk, mp, mpf, pi, sin, sqrt
+from swings import period_of, time_to
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene, crossing
@@ -154,15 +154,10 @@ class TwoRoots(Scene):
 
         The first comes from rest at -amplitude; the others follow by the period.
         """
-        with mp.workdps(30):
-            k = sin(mpf(self.amplitude) / 2)
-            unit = sqrt(2 / (3 * mpf(self.gravity)))
-            quarter = ellipk(k**2) * unit
-            past = ellipf(asin(sin(mpf(self.mark) / 2) / k), k**2) * unit
-            assert past < quarter < pi
-            both = (quarter + past, 3 * quarter - past)
-            times = [float(t + 4 * quarter * n) for n in range(self.swings) for t in both]
-            return times, float(4 * quarter * self.swings)
+        whole = period_of(self.amplitude, self.gravity)
+        first = time_to(-self.mark, self.amplitude, self.gravity)
+        times = [float(t + whole * n) for n in range(self.swings) for t in (first, whole - first)]
+        return times, float(whole * self.swings)
 
     @property
     def span(self) -> tuple[float, float]:  # type: ignore[override]

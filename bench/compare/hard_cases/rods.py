@@ -16,18 +16,17 @@ def two_rods(
     *,
     from_hanging: bool = False,
     of: Any = math,
-    one: Any = 1,
     torques: Callable[[float, float, float], tuple[float, float]] | None = None,
 ) -> Callable[[float, Array], list[float]]:
     """Make the rates; `torques` gives those in both joints, N m, at t, qd_1 and qd_2.
 
-    `of` has the functions of an arithmetic, and `one` is its number 1. The determinant is free of
-    terms that cancel. Python's floats are quicker than NumPy's, which know infinities.
+    The determinant is free of terms that cancel. Python's floats are quicker than NumPy's, which
+    know infinities: `of` is `math` or `numpy`.
     """
     cos, sin, a = of.cos, of.sin, 0.5 + payload
-    weight1, weight2 = (1.5 + payload) * (one * G), a * (one * G)
-    near, far = 4 * one / 3 + payload, one / 3 + payload
-    least = 7 * one / 36 + 2 * payload / 3
+    weight1, weight2 = (1.5 + payload) * G, a * G
+    near, far = 4 / 3 + payload, 1 / 3 + payload
+    least = 7 / 36 + 2 * payload / 3
 
     def rates(t: float, y: Any) -> list[float]:
         q1, q2, w1, w2 = y.tolist() if of is math else y

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 from cases import Array
+from dense_chain import DenseChain
 from hybrid_chain import extrapolated_step
 from mpmath import mp, mpf, sqrt
-from trajectory_error import coupling
 
 from hard_cases.outcome import Outcome
 from hard_cases.programs import HANGING, Motion, Scene
@@ -167,8 +167,12 @@ class LetGo(KnownEnd):
     steps = 2000  # of the reference; 1000 move the tip by 3e-7 m, a 12th order makes it 1e-10 m
 
     def __init__(self) -> None:
-        one = np.ones(self.links)
-        self.coupled, self.moments = coupling(self.mass * one, self.length * one)
+        each = {
+            "masses": np.full(self.links, self.mass),
+            "lengths": np.full(self.links, self.length),
+        }
+        chain = DenseChain(**each, gravity=self.gravity)
+        self.coupled, self.moments = chain.couplings, chain.moments
 
     def positions(self, q: Array) -> Array:
         """Return the position of the tip."""

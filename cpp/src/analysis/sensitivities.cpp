@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/changes_by_series.hpp"
 #include "analysis/collocation_kernels.hpp"
 #include "analysis/saltation.hpp"
 #include "arithmetic/epsilon.hpp"
@@ -17,9 +18,9 @@ namespace {
 
 constexpr int most_halvings_of_step = 44;
 constexpr int most_cuts_of_step = 1000;
-/// The error that a step may add, as a share: a hundredth of what the run may, between these.
+/// The error that a step may add, as a share: a third of what the run may, between these.
 constexpr double least_tolerance = 1e-14;
-constexpr double most_tolerance = 1e-10;
+constexpr double most_tolerance = 1e-8;
 
 }  // namespace
 
@@ -46,6 +47,7 @@ struct Sensitivities::Variation {
 
   VariationalEquations equations;
   std::optional<Saltation> saltation{};  ///< of a scene whose laws change
+  ChangesBySeries series;
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
   double t_start = 0.0;
@@ -189,15 +191,25 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
 void Sensitivities::Variation::take(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
   cuts_left = most_cuts_of_step;
-  // A time that is kept is the end of a part: there, the order is highest.
+  const bool by_series =
+      !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
+  // By collocation, a time that is kept is the end of a part: there, the order is highest.
+  const auto advance_to = [&](double from, double to) {
+    if (is_over) return;
+    if (by_series) {
+      series.get(to, now);
+    } else {
+      advance(step, from, to, 0);
+    }
+  };
   double from = 0.0;
   for (; std::isfinite(next_share(step)); ++next_time) {
     const double to = next_share(step);
-    if (!is_over) advance(step, from, to, 0);
+    advance_to(from, to);
     keep(t_eval[next_time]);
     from = to;
   }
-  if (from != step.share && !is_over) advance(step, from, step.share, 0);
+  if (from != step.share) advance_to(from, step.share);
   t_start = step.t;
   if (!keeps_times) keep(step.t);
 }
@@ -237,7 +249,7 @@ void Sensitivities::keep(Store store, const Options& options) {
       store == Store::times || (store == Store::dense && !options.t_eval.empty());
   variation_->t_eval = options.t_eval;
   const double rtol = options.step ? 0.0 : *std::ranges::min_element(options.rtol);
-  variation_->tolerance = std::clamp(0.01 * rtol, least_tolerance, most_tolerance);
+  variation_->tolerance = std::clamp(0.3 * rtol, least_tolerance, most_tolerance);
 }
 
 void Sensitivities::starts(double t, std::span<const double> y) { variation_->start(t, y); }

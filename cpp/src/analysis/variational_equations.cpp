@@ -157,7 +157,9 @@ void VariationalEquations::put_along(double t, bool forward) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
   forces_ = JointForces::on_free_joints(scene_, held);
-  mechanisms_ = mechanisms_along(scene_, modes_, t, forward, names_of_parameters_);
+  along_.emplace(scene_, modes_, t, forward, names_of_parameters_);
+  mechanisms_ = along_->with_all_slopes();
+  ++changes_of_laws_;
 }
 
 void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q,

@@ -46,8 +46,11 @@ class VariationalEquations {
   const std::vector<Parameter>& parameters() const { return parameters_; }
   /// The numbers of the scene along them, in the laws that are in force.
   const std::vector<Mechanism<AlongParameters>>& mechanisms() const { return mechanisms_; }
+  const MechanismAlong& mechanism_along() const { return *along_; }
   /// With the laws that are in force.
   const EquationsOfMotion& equations() const { return equations_; }
+  /// How often laws have been taken: not at all, until a run starts.
+  int changes_of_laws() const { return changes_of_laws_; }
 
   /// The change of a state with each name at the start, (2n, k).
   Matrix changes_of_start() const;
@@ -79,7 +82,9 @@ class VariationalEquations {
   std::vector<std::string> names_of_parameters_;
   std::vector<int> modes_;
   std::optional<JointForces> forces_;  ///< on the joints that turn
+  std::optional<MechanismAlong> along_;
   std::vector<Mechanism<AlongParameters>> mechanisms_;
+  int changes_of_laws_ = 0;
   ChangesOfAccelerations by_parameters_;
   Vector qdd_;
 };

@@ -23,7 +23,9 @@ struct Dual {
   Row value;
   // GCC reports the alignment of a pack beside a number as on the baseline, and its clones rely on
   // the true one.
-  alignas(std::is_same_v<Row, Along> ? alignof(Along) : sizeof(Along)) Along slope;
+  alignas(std::is_same_v<Row, Along> ? alignof(Along)
+          : sizeof(Along) < 64       ? sizeof(Along)
+                                     : 64) Along slope;
 
   Dual() = default;
   PENDCORE_INLINE Dual(const Row& constant)  // NOLINT(google-explicit-constructor): as a row would
@@ -114,6 +116,15 @@ struct Constants<Dual<Row, Along>> {
   PENDCORE_INLINE static Dual<Row, Along> of(const Dual<Row, Along>& x) { return x; }
 };
 
+template <class Along>
+PENDCORE_INLINE double value_of(const Dual<double, Along>& x) {
+  return x.value;
+}
+template <class Row, class Along>
+bool is_zero(const Dual<Row, Along>& x) {
+  return is_zero(x.value) && is_zero(x.slope);
+}
+
 /// Loads a row from consecutive numbers in memory, or stores it. Plain numbers are constants.
 template <class DualRow>
   requires requires(DualRow x) { x.slope; }
@@ -135,10 +146,10 @@ PENDCORE_INLINE void store(Dual<double>* to, const Dual<Row>& x) {
 }
 
 /// A function that only moves numbers, or adds some to others, does so with values and slopes.
-#define PENDCORE_LINEAR_FUNCTION(function)                   \
-  template <class... Rows>                                   \
-  PENDCORE_INLINE auto function(const Dual<Rows>&... x) {    \
-    return Dual(function(x.value...), function(x.slope...)); \
+#define PENDCORE_LINEAR_FUNCTION(function)                        \
+  template <class... Rows, class... Alongs>                       \
+  PENDCORE_INLINE auto function(const Dual<Rows, Alongs>&... x) { \
+    return Dual(function(x.value...), function(x.slope...));      \
   }
 PENDCORE_LINEAR_FUNCTION(other)
 PENDCORE_LINEAR_FUNCTION(before)

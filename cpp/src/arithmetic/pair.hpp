@@ -212,4 +212,31 @@ PENDCORE_INLINE void sine_cosine(const Two<Real>& x, Two<Real>& sine, Two<Real>&
   sine_cosine(x.second, sine.second, cosine.second);
 }
 
+/// A number of each link times the slopes of that link's number.
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 2)
+PENDCORE_INLINE Two<Slopes> operator*(const Pair& x, const Two<Slopes>& y) {
+  return {x[0] * y.first, x[1] * y.second};
+}
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 2)
+PENDCORE_INLINE Two<Slopes> operator*(const Two<Slopes>& x, const Pair& y) {
+  return y * x;
+}
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 2)
+PENDCORE_INLINE Two<Slopes> operator/(const Two<Slopes>& x, const Pair& y) {
+  return {x.first / y[0], x.second / y[1]};
+}
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 2)
+PENDCORE_INLINE Two<Slopes> fma(const Pair& a, const Two<Slopes>& b, const Two<Slopes>& c) {
+  return {fma(a[0], b.first, c.first), fma(a[1], b.second, c.second)};
+}
+template <class Slopes>
+  requires(Lanes<Slopes>::width > 2)
+PENDCORE_INLINE Two<Slopes> fma(double a, const Two<Slopes>& b, const Two<Slopes>& c) {
+  return {fma(a, b.first, c.first), fma(a, b.second, c.second)};
+}
+
 }  // namespace pendcore

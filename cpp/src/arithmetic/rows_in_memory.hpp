@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "arithmetic/dual_rows.hpp"
 #include "arithmetic/pair.hpp"
 
 namespace pendcore {
@@ -43,6 +44,27 @@ class RowsInMemory {
 
  private:
   std::vector<double> numbers_;
+};
+
+/// Numbers with slopes.
+template <class Along>
+class RowsInMemory<Dual<double, Along>, Dual<double, Along>> {
+  using Number = Dual<double, Along>;
+
+ public:
+  static constexpr int places = 1;
+
+  void assign(std::size_t count) { numbers_.assign(count, Number{}); }
+  PENDCORE_INLINE const Number& operator[](std::ptrdiff_t i) const { return numbers_[i]; }
+  PENDCORE_INLINE const Number& row(std::ptrdiff_t i) const { return numbers_[i]; }
+  PENDCORE_INLINE PairOf<Number> pair(std::ptrdiff_t i) const {
+    return pair_of(numbers_[i], numbers_[i + 1]);
+  }
+  PENDCORE_INLINE void set(std::ptrdiff_t i, const Number& x) { numbers_[i] = x; }
+  PENDCORE_INLINE void set_row(std::ptrdiff_t i, const Number& x) { numbers_[i] = x; }
+
+ private:
+  std::vector<Number> numbers_;
 };
 
 }  // namespace pendcore

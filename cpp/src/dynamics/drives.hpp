@@ -27,7 +27,7 @@ struct WavesOf {
   }
 };
 
-/// `Number` is a double, or a pack with a trajectory in each lane.
+/// `Number` is a double, a pack with a trajectory in each lane, or a number with slopes.
 template <class Number>
 struct Drives {
   /// A run computes four waves at a time; in lanes, each has a pack to itself.
@@ -48,7 +48,7 @@ struct Drives {
   }
 
   /// Computes sine and cosine of the waves from number `known` on, at time t.
-  PENDCORE_INLINE_UNLESS_SMALL void compute_waves(const Number& t, int known) const {
+  PENDCORE_INLINE_UNLESS_SMALL void compute_waves(const ConstantOf<Number>& t, int known) const {
     for (int k = known; k < waves; k += Numbers::places) {
       Together s, c;
       sine_cosine(fma(angular_frequency.row(k), Constants<Together>::of(t), phase.row(k)), s, c);

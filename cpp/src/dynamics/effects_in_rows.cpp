@@ -194,20 +194,7 @@ void EffectsInRows<Row>::sum_couples(int joint) {
     if (place_of_[i] != joint) continue;
     const std::optional<Couple> one = effects[i]->couple(modes[i]);
     if (!one) continue;
-    if (one->slope != 0.0 || one->start != 0.0) {
-      // The common start is the latest, even if starts are negative: it keeps t - start small.
-      const double start = has_start ? std::max(sum.start, one->start) : one->start;
-      sum.held += sum.slope * (start - sum.start) + one->held + one->slope * (start - one->start);
-      sum.start = start;
-      sum.slope += one->slope;
-      has_start = true;
-    } else {
-      sum.held += one->held;
-    }
-    sum.on_phi += one->on_phi;
-    sum.on_phid += one->on_phid;
-    sum.on_phid2 += one->on_phid2;
-    sum.on_phid3 += one->on_phid3;
+    add_couple(sum, *one, has_start);
     if (one->gain != 0.0) joint_waves.push_back({joint, number_of_wave[i], one->gain});
   }
   if constexpr (width == 2) {

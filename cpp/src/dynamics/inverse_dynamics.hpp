@@ -13,63 +13,13 @@
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "arithmetic/dual.hpp"
 #include "dynamics/joint_forces.hpp"
+#include "dynamics/mechanism.hpp"
 #include "dynamics/row.hpp"
-#include "effects/laws.hpp"
-#include "pendcore/scene.hpp"
-#include "pendcore/vector.hpp"
 
 namespace pendcore {
-
-/// A number, and its slopes along four parameters.
-using AlongParameters = Dual<double, Pack<4>>;
-inline constexpr std::size_t parameters_at_once = 4;
-
-/// All numbers on which the torques depend, with each effect in a mode. A user's function is none
-/// of them. `Number` is a double, or one with slopes along parameters.
-template <class Number>
-struct Mechanism {
-  struct Body {
-    Number mass{}, length{}, center{}, inertia{};
-    Number armature{};  ///< of the rotor in the joint where the link begins, kg m^2
-  };
-  struct Wave {
-    Number angular_frequency{}, phase{};
-  };
-  struct Acting {
-    int place = 0;  ///< the joint or the link, from 0
-    std::optional<CoupleOf<Number>> couple{};
-    std::optional<LawOn<Number>> law{};
-    bool moves_pivot = false;
-    PivotLawOf<Number> pivot{};
-    std::vector<Wave> waves{};
-  };
-
-  Number gravity{}, payload_mass{}, payload_inertia{};
-  std::vector<Body> bodies{};
-  std::vector<Acting> effects{};
-};
-
-/// The modes that a state calls for, of each effect.
-std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd);
-
-Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
-
-/// The same with slopes along some parameters (pendcore/parameters.hpp), four in each mechanism,
-/// from a time on. What other parameters of the list give stays as it is: the centre of a rod that
-/// is named does not follow its length. Slopes are right to some 13 digits: the constants of laws
-/// are smooth functions of parameters, whose differences are extrapolated. Throws
-/// std::invalid_argument for a name that the scene does not have, and for a value at which a law
-/// has a corner.
-std::vector<Mechanism<AlongParameters>> mechanisms_along(const Scene& scene,
-                                                         const std::vector<int>& modes, double t,
-                                                         bool forward,
-                                                         const std::vector<std::string>& names);
 
 /// What laws see of one link or joint (effects/laws.hpp).
 template <class Number>

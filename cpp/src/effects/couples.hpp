@@ -43,6 +43,27 @@ struct CoupleOf {
 };
 using Couple = CoupleOf<double>;
 
+/// Adds a couple without its wave to the sum of others on the same joint. `has_start` says whether
+/// one of them depends on time.
+template <class Number>
+void add_couple(CoupleOf<Number>& sum, const CoupleOf<Number>& one, bool& has_start) {
+  if (is_zero(one.slope) && is_zero(one.start)) {
+    sum.held += one.held;
+  } else {
+    // The common start is the latest, even if starts are negative: it keeps t - start small.
+    const bool is_later = !has_start || value_of(sum.start) < value_of(one.start);
+    const Number start = is_later ? one.start : sum.start;
+    sum.held += sum.slope * (start - sum.start) + one.held + one.slope * (start - one.start);
+    sum.start = start;
+    sum.slope += one.slope;
+    has_start = true;
+  }
+  sum.on_phi += one.on_phi;
+  sum.on_phid += one.on_phid;
+  sum.on_phid2 += one.on_phid2;
+  sum.on_phid3 += one.on_phid3;
+}
+
 /// The sums of the couples on a row of joints. The alignment is set here: GCC reports the alignment
 /// of a wide pack as on the baseline, and its clones rely on the true alignment.
 template <class Row>

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ensemble/lane_loop.hpp"
-#include "ensemble/series_of_double_pendulums.hpp"
 #include "integrate/taylor/dominant_eigenvalue.hpp"
 
 namespace pendcore {
@@ -26,7 +25,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       tightest = std::min(tightest, std::max(this->rtol_[i], this->atol_[i]));
     }
     this->prepare(all_.equations);
-    all_.expand_kernel = expand_kernel_on<Form, set>();
+    all_.expand_kernel = only<&expand_in_lanes<Form, Pack<width>>, set>();
     all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
       all_.rtol[i] = broadcast<Pack<width>>(this->rtol_[i]);

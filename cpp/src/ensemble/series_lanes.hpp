@@ -16,18 +16,12 @@
 
 namespace pendcore {
 
-/// Computes the series from y at time t in units of sigma. It is a kernel of its own, so that it
-/// can be compiled by other options than the steps (CMakeLists.txt).
+/// Computes the series from y at time t in units of sigma. It is a kernel of its own, which a step
+/// calls.
 template <class Form, class Real>
 PENDCORE_INLINE void expand_in_lanes(const Form* equations, const Real* t, const Real* y,
                                      const Real* sigma, int order, Real* rows) {
   equations->expand(*t, y, *sigma, order, rows);
-}
-template <class Form, int width>
-using ExpandKernel = decltype(&expand_in_lanes<Form, Pack<width>>);
-template <class Form, InstructionSet set>
-ExpandKernel<Form, width_on(set)> expand_kernel_on() {
-  return only<&expand_in_lanes<Form, Pack<width_on(set)>>, set>();
 }
 
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
@@ -42,7 +36,8 @@ struct SeriesLanes : LaneSteps<width> {
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
-  ExpandKernel<Form, width> expand_kernel = nullptr;  ///< a clone of expand_in_lanes()
+  /// A clone of it.
+  decltype(&expand_in_lanes<Form, Real>) expand_kernel = nullptr;
   Packs y, y_new, rtol, atol;
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow

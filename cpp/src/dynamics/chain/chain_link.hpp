@@ -12,7 +12,7 @@
 
 namespace pendcore {
 
-/// `Number` is a double, or a pack with one trajectory a lane.
+/// `Number` is a double, a pack with one trajectory a lane, or a number with slopes.
 template <class Number>
 struct ChainLinkOf {
   Number m, L, mc, I, Io, LL, turn, across;  // turn: I_o - m c L, across: I + m (L - c)^2
@@ -23,6 +23,23 @@ struct ChainLinkOf {
   }
 };
 using ChainLink = ChainLinkOf<double>;
+
+/// A link of length L, whose centre of mass is at a distance from the joint where it begins.
+template <class Number>
+ChainLinkOf<Number> chain_link(const Number& m, const Number& L, const Number& center,
+                               const Number& I) {
+  const Number mc = m * center;
+  const Number about_joint = I + m * center * center;
+  const Number rest = L - center;
+  return {.m = m,
+          .L = L,
+          .mc = mc,
+          .I = I,
+          .Io = about_joint,
+          .LL = L * L,
+          .turn = about_joint - mc * L,
+          .across = I + m * rest * rest};
+}
 
 /// The links of a scene. The last link has the moment of inertia of the payload. The first link has
 /// the rotor of joint 1, which turns against the ground; rotors of other joints couple two links

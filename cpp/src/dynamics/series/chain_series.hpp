@@ -34,6 +34,7 @@
 #include "arithmetic/rows_in_memory.hpp"
 #include "dynamics/chain/chain_link.hpp"
 #include "dynamics/effects_in_rows.hpp"
+#include "dynamics/mechanism.hpp"
 
 namespace pendcore {
 
@@ -49,15 +50,26 @@ class ConstantsOfChain {
       : ConstantsOfChain(static_cast<int>(scene.links.size())) {
     const Inertia inertia(scene);
     const std::vector<double> rotors = inertia.rotors_between_links();
-    std::ptrdiff_t at = 0;
+    int i = 0;
     for (const ChainLink& k : chain_links(scene, inertia)) {
-      const double rotor = rotors[at / each];
-      for (const double x : {k.m, k.L, k.mc, k.I, k.Io, k.LL, k.turn, k.across, rotor}) {
-        numbers_.set(at++, x);
-      }
+      set_link(i, k, rotors[i]);
+      ++i;
     }
-    numbers_.set(at++, scene.gravity);
-    numbers_.set(at, inertia.payload_mass);
+    numbers_.set(each * links_, scene.gravity);
+    numbers_.set(each * links_ + 1, inertia.payload_mass);
+  }
+  explicit ConstantsOfChain(const Mechanism<Number>& of)
+    requires(!std::is_same_v<Number, double>)
+      : ConstantsOfChain(static_cast<int>(of.bodies.size())) {
+    for (int i = 0; i < links_; ++i) {
+      const auto& body = of.bodies[i];
+      const Number I = i + 1 < links_ ? body.inertia : body.inertia + of.payload_inertia;
+      ChainLinkOf<Number> k = chain_link(body.mass, body.length, body.center, I);
+      if (i == 0) k.Io += body.armature;
+      set_link(i, k, i == 0 ? Number{} : body.armature);
+    }
+    numbers_.set(each * links_, of.gravity);
+    numbers_.set(each * links_ + 1, of.payload_mass);
   }
   /// Puts the constants of one trajectory into a lane.
   void put(int lane, const ConstantsOfChain<double>& one) {
@@ -77,23 +89,31 @@ class ConstantsOfChain {
   /// Whether there are rotors between links.
   bool has_rotors() const {
     for (int i = 0; i < links_; ++i) {
-      if (lane(rotor(i), 0) > 0.0) return true;
+      if (!is_zero(rotor(i))) return true;
     }
     return false;
   }
 
  private:
   std::ptrdiff_t count() const { return each * links_ + 2; }
+  void set_link(int i, const ChainLinkOf<Number>& k, const Number& rotor) {
+    std::ptrdiff_t at = each * i;
+    for (const Number& x : {k.m, k.L, k.mc, k.I, k.Io, k.LL, k.turn, k.across, rotor}) {
+      numbers_.set(at++, x);
+    }
+  }
   int links_;
   RowsInMemory<Number, Number> numbers_;
 };
 
 /// Computes one series at a time, in one thread, in memory of its own. `Row` is the type of the
-/// effects' rows; `Effects` are EffectsInRows, or EffectsInLanes with a trajectory in each lane.
+/// effects' rows; `Effects` are EffectsInRows, EffectsInLanes with a trajectory in each lane, or
+/// EffectsWithSlopes.
 template <class Row, class Effects = EffectsInRows<Row>>
 class ChainSeries {
  public:
   using Number = typename Effects::Number;
+  using Time = ConstantOf<Number>;
   using Block = Row;
   static constexpr int blocks = 0;  ///< known at run time only
   static constexpr bool is_short = false;
@@ -113,7 +133,7 @@ class ChainSeries {
 
   /// Fills rows 1 .. order of `coefficients`, each (q, qd), both padded to whole rows, with time in
   /// units of sigma.
-  PENDCORE_INLINE void expand(const Number& t, const Number* y, const Number& sigma, int order,
+  PENDCORE_INLINE void expand(const Time& t, const Number* y, const Time& sigma, int order,
                               Number* coefficients) const;
 
  private:
@@ -132,10 +152,10 @@ class ChainSeries {
   };
 
   PENDCORE_INLINE void factor() const;
-  PENDCORE_INLINE void advance_waves(const Number& sigma, int k) const;
-  PENDCORE_INLINE void pivot_acceleration(const Number& t, const Number& sigma, int k, Number& x,
+  PENDCORE_INLINE void advance_waves(const Time& sigma, int k) const;
+  PENDCORE_INLINE void pivot_acceleration(const Time& t, const Time& sigma, int k, Number& x,
                                           Number& y) const;
-  PENDCORE_INLINE void add_couples(const Number& t, const Number& sigma, int k) const;
+  PENDCORE_INLINE void add_couples(const Time& t, const Time& sigma, int k) const;
   PENDCORE_INLINE void solve(Number ax, Number ay) const;
 
   enum Quantity : int {

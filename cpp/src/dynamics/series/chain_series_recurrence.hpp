@@ -2,6 +2,7 @@
 /// The recurrences of chain_series.hpp.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "arithmetic/power.hpp"
@@ -87,10 +88,10 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::factor() const {
 
 /// Takes the waves sin(phase + omega sigma theta) from order k to the next.
 template <class Row, class Effects>
-PENDCORE_INLINE void ChainSeries<Row, Effects>::advance_waves(const Number& sigma, int k) const {
+PENDCORE_INLINE void ChainSeries<Row, Effects>::advance_waves(const Time& sigma, int k) const {
   if (!effects_) return;
   for (int i = 0; i < effects_->waves; ++i) {
-    const Number factor = effects_->angular_frequency[i] * sigma * inverse_of[k + 1];
+    const Number factor = inverse_of[k + 1] * (sigma * effects_->angular_frequency[i]);
     const Number sine = effects_->wave_sine[i];
     effects_->wave_sine.set(i, factor * effects_->wave_cosine[i]);
     effects_->wave_cosine.set(i, -(factor * sine));
@@ -98,9 +99,9 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::advance_waves(const Number& sigm
 }
 
 template <class Row, class Effects>
-PENDCORE_INLINE void ChainSeries<Row, Effects>::pivot_acceleration(const Number& t,
-                                                                   const Number& sigma, int k,
-                                                                   Number& x, Number& y) const {
+PENDCORE_INLINE void ChainSeries<Row, Effects>::pivot_acceleration(const Time& t, const Time& sigma,
+                                                                   int k, Number& x,
+                                                                   Number& y) const {
   x = Number{};
   y = k == 0 ? Number(-(sigma * sigma * constants_.gravity())) : Number{};
   if (!effects_) return;
@@ -118,12 +119,13 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::pivot_acceleration(const Number&
 
 /// Adds the torques of the effects, order k, from angle_ and speed_ of that order.
 template <class Row, class Effects>
-PENDCORE_INLINE void ChainSeries<Row, Effects>::add_couples(const Number& t, const Number& sigma,
+PENDCORE_INLINE void ChainSeries<Row, Effects>::add_couples(const Time& t, const Time& sigma,
                                                             int k) const {
   constexpr int margin = chain_series_detail::margin;
   if (!effects_ || (effects_->couples.empty() && effects_->joint_waves.empty())) return;
   for (int i = 0; i < row_; i += places) couple_.set_row(margin + i, Row{});
-  const Number square = sigma * sigma;
+  const Time square = sigma * sigma;
+  const Time per_sigma = inverse_of_power_of_two(sigma);
   for (const Couples<Row>& one : effects_->couples) {
     const int at = margin + one.row * places;
     const Row phi = angle_.row(at) - angle_.row(at - 1);
@@ -143,7 +145,7 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::add_couples(const Number& t, con
       const Row w2 = order_of_product(k, rate, rate);
       set_order_of(square_of, row, k, w2);
       const Row w3 = order_of_product(k, square_of_rate, rate);
-      torque = fma(one.on_phid2, w2, fma(Row(one.on_phid3 / sigma), w3, torque));
+      torque = fma(one.on_phid2, w2, fma(Row(per_sigma * one.on_phid3), w3, torque));
     }
     couple_.set_row(at, torque);
   }
@@ -200,19 +202,29 @@ PENDCORE_INLINE void ChainSeries<Row, Effects>::solve(Number ax, Number ay) cons
 }
 
 template <class Row, class Effects>
-PENDCORE_INLINE void ChainSeries<Row, Effects>::expand(const Number& t, const Number* y,
-                                                       const Number& sigma, int order,
+PENDCORE_INLINE void ChainSeries<Row, Effects>::expand(const Time& t, const Number* y,
+                                                       const Time& sigma, int order,
                                                        Number* coefficients) const {
   constexpr int margin = chain_series_detail::margin;
-  // Numbers side by side make a row; in lanes, one number does.
+  // Numbers side by side make a row; in lanes, or with slopes, one number does.
+  constexpr bool have_slopes = !std::is_same_v<Number, Time>;
   const auto row_at = [](const Number* from) __attribute__((always_inline)) {
-    Row x;
-    __builtin_memcpy(&x, from, sizeof x);
-    return x;
+    if constexpr (have_slopes) {
+      return *from;
+    } else {
+      Row x;
+      __builtin_memcpy(&x, from, sizeof x);
+      return x;
+    }
   };
-  const auto put_row = [](Number* to, const Row& x)
-                           __attribute__((always_inline)) { __builtin_memcpy(to, &x, sizeof x); };
-  const Number per_sigma = inverse_of_power_of_two(sigma);
+  const auto put_row = [](Number* to, const Row& x) __attribute__((always_inline)) {
+    if constexpr (have_slopes) {
+      *to = x;
+    } else {
+      __builtin_memcpy(to, &x, sizeof x);
+    }
+  };
+  const Time per_sigma = inverse_of_power_of_two(sigma);
   for (int g = 0; g < groups_; ++g) {
     const int at = g * places;
     Row s, c;

@@ -188,6 +188,15 @@ inline constexpr auto numbers_of_order = [] {
   return table;
 }();
 
+/// a b + c of a pair of links in the steps of a series, as what is faster in a single run.
+template <class Half>
+PENDCORE_INLINE Half fma_of_links(const Half& a, const Half& b, const Half& c) {
+#if !defined(__wasm__)
+  if constexpr (std::is_same_v<Half, Pair>) return fma_lane_by_lane(a, b, c);
+#endif
+  return fma(a, b, c);
+}
+
 /// The orders of one series. Rows are (x, x', y, y'), along u_0 and n_0 of each link. In a single
 /// run, a row for a rate is the pair twice.
 template <class Number>
@@ -217,9 +226,9 @@ struct DoublePendulumOrders {
   Row pulls[highest_order];  ///< in order 0 with the weight
 
   /// Computes order 0.
-  template <class TorqueOrders>
-  PENDCORE_INLINE DoublePendulumOrders(const ConstantsOfDoublePendulum<Constant>& constants,
-                                       const Number* y, const Constant& sigma, TorqueOrders& torque,
+  template <class OfLinks, class TorqueOrders>
+  PENDCORE_INLINE DoublePendulumOrders(const OfLinks& constants, const Number* y,
+                                       const Constant& sigma, TorqueOrders& torque,
                                        Number* coefficients, Last& last);
   /// Computes order k >= 1 from its sums (terms_by_age.hpp).
   template <class TorqueOrders>
@@ -232,10 +241,10 @@ struct DoublePendulumOrders {
 };
 
 template <class Number>
-template <class TorqueOrders>
+template <class OfLinks, class TorqueOrders>
 PENDCORE_INLINE DoublePendulumOrders<Number>::DoublePendulumOrders(
-    const ConstantsOfDoublePendulum<Constant>& constants, const Number* y, const Constant& sigma,
-    TorqueOrders& torque, Number* coefficients, Last& last) {
+    const OfLinks& constants, const Number* y, const Constant& sigma, TorqueOrders& torque,
+    Number* coefficients, Last& last) {
   auto& [angle, alpha, beta_x, beta_y, pull_x] = last;
   per_sigma = inverse_of_power_of_two(sigma);
   angle = Of::pair_at(y);
@@ -279,14 +288,14 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::next(std::ptrdiff_t k, const 
   const Half turn_of_alpha = of.second_over * minus_rate;
   const Half next = Constants<Half>::of(of.next);
   const Half turned_x = turn * beta_x;  // first: lanes would keep a copy of beta_x in memory
-  beta_x = fma(turn_of_alpha, alpha, fma(next, low_half(along), turn * beta_y));
-  beta_y = fma(next, high_half(along), -turned_x);
-  const Half older = fma(pull_cosine, other(beta_y), high_half(across)) + low_half(across);
-  Half f = fma(minus_rate, pull_x, fma(pull_sine, other(beta_x), older));
+  beta_x = fma_of_links(turn_of_alpha, alpha, fma_of_links(next, low_half(along), turn * beta_y));
+  beta_y = fma_of_links(next, high_half(along), -turned_x);
+  const Half older = fma_of_links(pull_cosine, other(beta_y), high_half(across)) + low_half(across);
+  Half f = fma_of_links(minus_rate, pull_x, fma_of_links(pull_sine, other(beta_x), older));
   if constexpr (!std::is_same_v<TorqueOrders, NoTorque>) {
-    f = fma(inverse, torque.next(static_cast<int>(k), angle, Of::pair(rates[k])), f);
+    f = fma_of_links(inverse, torque.next(static_cast<int>(k), angle, Of::pair(rates[k])), f);
   }
-  alpha = fma(minus_kappa, other(f), f);
+  alpha = fma_of_links(minus_kappa, other(f), f);
   finish(k, coefficients, last);
 }
 
@@ -303,9 +312,14 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   n[k + 2] = joined(Half(of.minus_share_of_n * bend_y), Half(of.share_of_n * beta_x));
   const Half x = other(beta_x);
   const Half y = other(bend_y);
-  pull_x = fma(-pull_sine, y, pull_cosine * x);
-  pulls[k] = joined(pull_x, fma(pull_cosine, y, pull_sine * x));
+  pull_x = fma_of_links(-pull_sine, y, pull_cosine * x);
+  pulls[k] = joined(pull_x, fma_of_links(pull_cosine, y, pull_sine * x));
 }
+
+/// Whether a series is bound by how long an order waits for the one before, and not by the number
+/// of its operations.
+template <class Number>
+inline constexpr bool is_bound_by_waiting = Lanes<Number>::width == 1;
 
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
 /// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the
@@ -345,17 +359,18 @@ PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<Number>& orders, const A
 }
 
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
-/// in units of sigma. `torque` gives the series of the torques.
-template <class Number, class TorqueOrders>
-PENDCORE_INLINE void expand_double_pendulum(
-    const ConstantsOfDoublePendulum<ConstantOf<Number>>& constants, const Number* y,
-    const ConstantOf<Number>& sigma, int order, TorqueOrders& torque, Number* coefficients) {
+/// in units of sigma. `constants` are ConstantsOfDoublePendulum of numbers or of their constants;
+/// `torque` gives the series of the torques.
+template <class Number, class OfLinks, class TorqueOrders>
+PENDCORE_INLINE void expand_double_pendulum(const OfLinks& constants, const Number* y,
+                                            const ConstantOf<Number>& sigma, int order,
+                                            TorqueOrders& torque, Number* coefficients) {
   using Orders = DoublePendulumOrders<Number>;
   using Row = typename Orders::Row;
   typename Orders::Last last;
   Orders orders(constants, y, sigma, torque, coefficients, last);
   orders.next(1, Row{}, Row{}, torque, coefficients, last);
-  expand_by_two<Row, (Lanes<Number>::width == 1)>(
+  expand_by_two<Row, is_bound_by_waiting<Number>>(
       order, [&](const auto& add) __attribute__((always_inline)) { return sums_of(orders, add); },
       [&](std::ptrdiff_t k, const Row& along, const Row& across) __attribute__((always_inline)) {
         orders.next(k, along, across, torque, coefficients, last);

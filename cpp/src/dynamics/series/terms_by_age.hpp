@@ -25,7 +25,7 @@ namespace pendcore {
 /// The sums of orders k and k + 1, or a part of them.
 template <class Value>
 struct TermsByAge {
-  Value along{}, across{}, next_along{}, next_across{};
+  Value along = Constants<Value>::of(0.0), across = along, next_along = along, next_across = along;
 
   TermsByAge() = default;
   // GCC would copy the structure in parts of 64 bytes, whose loads wait until the packs that were
@@ -48,7 +48,7 @@ struct TermsByAge {
 /// The sums of orders 2 and 3, of the numbers that `pull(j)`, `rate(j)` and `n(j)` return.
 template <class Value, class Pull, class Rate, class Normal>
 PENDCORE_INLINE TermsByAge<Value> first_terms(const Pull& pull, const Rate& rate, const Normal& n) {
-  const Value none{};
+  const Value none = Constants<Value>::of(0.0);
   TermsByAge<Value> sum;
   sum.along = fma(rate(1), n(2), none);
   sum.across = fma(pull(0), n(2), none);
@@ -66,18 +66,18 @@ PENDCORE_INLINE TermsByAge<Value> older_terms(std::ptrdiff_t k, const Pull& pull
   std::ptrdiff_t above = k / 2;
   std::ptrdiff_t below = above;
   auto low_rate = rate(below);
-  Value low_pull = pull(below - 1);
+  auto low_pull = pull(below - 1);
   auto high_rate = low_rate;
-  Value high_pull = low_pull;
+  auto high_pull = low_pull;
   for (; below > 2; ++above, --below) {
-    const Value high_n = n(above + 2);
+    const auto high_n = n(above + 2);
     sum.next_along = fma(low_rate, high_n, sum.next_along);
     sum.next_across = fma(low_pull, high_n, sum.next_across);
     low_rate = rate(below - 1);
     low_pull = pull(below - 2);
     sum.along = fma(low_rate, high_n, sum.along);
     sum.across = fma(low_pull, high_n, sum.across);
-    const Value low_n = n(below + 1);
+    const auto low_n = n(below + 1);
     sum.along = fma(high_rate, low_n, sum.along);
     sum.across = fma(high_pull, low_n, sum.across);
     high_rate = rate(above + 1);
@@ -85,7 +85,7 @@ PENDCORE_INLINE TermsByAge<Value> older_terms(std::ptrdiff_t k, const Pull& pull
     sum.next_along = fma(high_rate, low_n, sum.next_along);
     sum.next_across = fma(high_pull, low_n, sum.next_across);
   }
-  const Value n_3 = n(3);
+  const auto n_3 = n(3);
   sum.along = fma(high_rate, n_3, sum.along);
   sum.across = fma(high_pull, n_3, sum.across);
   return sum;

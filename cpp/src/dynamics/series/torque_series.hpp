@@ -61,24 +61,26 @@ PENDCORE_INLINE TorqueLaws<Links, typename Effects::Number> torque_laws(const Ef
   return laws;
 }
 
-/// The orders of one series of torques. `Links` may be dual; the time is not.
-template <class Links, class Number>
+/// The orders of one series of torques. `Links` may be dual, the constants of laws, `OfLinks`, too;
+/// the time is not.
+template <class Links, class Number, class OfLinks = ConstantOf<Links>>
 class TorqueOrders {
-  using Laws = TorqueLaws<ConstantOf<Links>, Number>;
+  using Laws = TorqueLaws<OfLinks, Number>;
   using Waves = PairOf<Number>;
+  using Time = ConstantOf<Number>;
 
  public:
-  PENDCORE_INLINE TorqueOrders(const Laws& laws, const Number& t, const Number& sigma)
+  PENDCORE_INLINE TorqueOrders(const Laws& laws, const Time& t, const Time& sigma)
       : laws_(laws),
         sigma_(sigma),
         per_sigma_(inverse_of_power_of_two(sigma)),
         by_(sigma * sigma * laws.factor) {
     if (laws.couples != nullptr) {
-      in_time_ = laws.couples->template in_time<ConstantOf<Links>>(t);
+      in_time_ = laws.couples->template in_time<OfLinks>(t);
       damping_ = per_sigma_ * laws.couples->on_phid;
     }
     if (laws.waves == 0) return;
-    sine_cosine(fma(laws.angular_frequency, Waves{t, t}, laws.phase), sine_, cosine_);
+    sine_cosine(fma(laws.angular_frequency, Constants<Waves>::of(t), laws.phase), sine_, cosine_);
     omega_sigma_ = sigma * laws.angular_frequency;
   }
 
@@ -134,10 +136,10 @@ class TorqueOrders {
   }
 
   const Laws& laws_;
-  Number sigma_, per_sigma_;
-  ConstantOf<Links> by_;         ///< sigma^2 times the factor
-  ConstantOf<Links> in_time_{};  ///< held + slope (t - start)
-  ConstantOf<Links> damping_{};  ///< on_phid/sigma
+  Time sigma_, per_sigma_;
+  OfLinks by_;         ///< sigma^2 times the factor
+  OfLinks in_time_{};  ///< held + slope (t - start)
+  OfLinks damping_{};  ///< on_phid/sigma
   Waves sine_{}, cosine_{}, omega_sigma_{};
   Links rates_[highest_order];
   Links squares_[highest_order];

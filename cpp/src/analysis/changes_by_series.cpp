@@ -1,0 +1,203 @@
+#include "analysis/changes_by_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "arithmetic/epsilon.hpp"
+#include "arithmetic/instruction_set.hpp"
+#include "dynamics/series/chain_series_recurrence.hpp"
+#include "dynamics/series/double_pendulum_along_names.hpp"
+#include "integrate/taylor/taylor_step.hpp"
+#include "scene/effects_of_scene.hpp"
+
+namespace pendcore {
+namespace {
+
+using Slopes = decltype(AlongNames::slope);
+constexpr int lowest_order = 6;
+constexpr int usual_order = 14;
+
+/// The series of all other scenes that have one.
+using SeriesOfChain = ChainSeries<AlongNames, EffectsWithSlopes<AlongNames>>;
+using AnySeries = std::variant<DoublePendulumAlongNames, SeriesOfChain>;
+
+template <class Series>
+PENDCORE_INLINE void expand_series(const Series* series, double t, const AlongNames* y,
+                                   double sigma, int order, AlongNames* rows) {
+  series->expand(t, y, sigma, order, rows);
+}
+
+/// Of the slopes of a series at x: the largest of orders 0 and 1, of the last two orders, and of
+/// those four orders before.
+struct Sizes {
+  double first[names_at_once], last[names_at_once], before[names_at_once];
+};
+PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, double x,
+                                Sizes* sizes) {
+  double power = 1.0;  // x^(order - 5)
+  for (int k = 5; k < order; ++k) power *= x;
+  const auto largest = [&](int first_order, double at) __attribute__((always_inline)) {
+    Slopes found{};
+    for (int k = first_order; k < first_order + 2; ++k, at *= x) {
+      for (int i = 0; i < size; ++i) {
+        found = larger(found, absolute(Slopes(at * rows[k * size + i].slope)));
+      }
+    }
+    return found;
+  };
+  store(sizes->first, largest(0, 1.0));
+  store(sizes->before, largest(order - 5, power));
+  store(sizes->last, largest(order - 1, power * (x * x) * (x * x)));
+}
+
+PENDCORE_INLINE void sum_slopes(const AlongNames* rows, int size, int order, double x,
+                                double* sums) {
+  for (int i = 0; i < size; ++i) {
+    Slopes sum = rows[order * size + i].slope;
+    for (int k = order; k-- > 0;) sum = fma(x, sum, rows[k * size + i].slope);
+    store(sums + i * names_at_once, sum);
+  }
+}
+
+}  // namespace
+
+/// The series for some names at once.
+struct ChangesBySeries::Part {
+  AnySeries series;
+  Eigen::Index first;  ///< of the names
+  int count;
+  std::vector<AlongNames> rows;
+
+  Part(const Mechanism<AlongNames>& mechanism, DoublePendulumAlongNames::Effects effects,
+       Eigen::Index first_name, int names)
+      : series(series_of(mechanism, std::move(effects))), first(first_name), count(names) {}
+
+  void set_order(int order, Eigen::Index size) {
+    std::visit([order](auto& one) { one.set_order(order); }, series);
+    rows.resize(static_cast<std::size_t>((order + 1) * size));
+  }
+  void expand(double t, double sigma, int order) {
+    std::visit(
+        [&]<class Series>(const Series& one) {
+          static const auto compute = fastest<&expand_series<Series>, wide_sets>();
+          compute(&one, t, rows.data(), sigma, order, rows.data());
+        },
+        series);
+  }
+
+ private:
+  static AnySeries series_of(const Mechanism<AlongNames>& mechanism,
+                             DoublePendulumAlongNames::Effects effects) {
+    if (DoublePendulumAlongNames::has(effects)) {
+      return DoublePendulumAlongNames(mechanism, std::move(effects));
+    }
+    return SeriesOfChain(
+        ConstantsOfChain<AlongNames>(mechanism),
+        std::make_shared<const EffectsWithSlopes<AlongNames>>(mechanism, effects.held));
+  }
+};
+
+ChangesBySeries::ChangesBySeries() = default;
+ChangesBySeries::~ChangesBySeries() = default;
+
+/// Makes the series of the laws that are in force; none where they have none.
+void ChangesBySeries::take_laws(const VariationalEquations& equations) {
+  laws_ = equations.changes_of_laws();
+  order_ = 0;
+  parts_.clear();
+  if (without_series(equations.scene())) return;
+  std::vector<char> held(equations.links());
+  if (const auto& effects = equations.equations().effects) held = effects->held;
+  const auto names = static_cast<int>(equations.names().size());
+  for (int first = 0; first < names; first += names_at_once) {
+    std::vector<int> parameters(names_at_once, -1);
+    for (std::size_t p = 0; p < equations.parameters().size(); ++p) {
+      const auto k = static_cast<int>(equations.parameters()[p].column) - first;
+      if (k >= 0 && k < names_at_once) parameters[k] = static_cast<int>(p);
+    }
+    const auto mechanism = equations.mechanism_along().with_slopes<AlongNames>(parameters);
+    DoublePendulumAlongNames::Effects effects(mechanism, held);
+    if (!effects.are_all_couples) return parts_.clear();
+    parts_.emplace_back(mechanism, std::move(effects), first,
+                        std::min(names_at_once, names - first));
+  }
+}
+
+void ChangesBySeries::set_order(int order, Eigen::Index size) {
+  order_ = order;
+  for (Part& part : parts_) part.set_order(order, size);
+}
+
+bool ChangesBySeries::expand(const VariationalEquations& equations, double t, const double* y,
+                             double h, const Matrix& changes, double tolerance) {
+  if (laws_ != equations.changes_of_laws()) take_laws(equations);
+  if (parts_.empty()) return false;
+  const double sigma = taylor_detail::power_of_two_below(std::abs(h));
+  x_ = h * inverse_of_power_of_two(sigma);
+  if (order_ == 0) set_order(usual_order, changes.rows());
+  if (wanted_order_ < order_ && order_ > lowest_order) set_order(order_ - 2, changes.rows());
+  wanted_order_ = lowest_order;
+  for (Part& part : parts_) {
+    for (;;) {
+      for (Eigen::Index i = 0; i < changes.rows(); ++i) {
+        AlongNames& start = part.rows[i] = AlongNames(y[i]);
+        for (int k = 0; k < part.count; ++k) {
+          set_lane(start.slope, k, changes(i, part.first + k));
+        }
+      }
+      part.expand(t, sigma, order_);
+      const auto [has_converged, wanted] = look_at(part, changes, tolerance);
+      wanted_order_ = std::max(wanted_order_, wanted);
+      if (has_converged) break;
+      if (wanted > highest_order) return false;
+      set_order(std::max(wanted, order_ + 2), changes.rows());
+    }
+  }
+  return true;
+}
+
+/// Looks at all changes that are numbers at the end of a step.
+ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Matrix& changes,
+                                                      double tolerance) const {
+  constexpr double safety = 0.1;          // for the order of the next step
+  constexpr double largest_size = 1e300;  // beyond, sums may overflow
+  constexpr Convergence none{.is_there = false, .wanted_order = highest_order + 1};
+  static const auto measure = fastest<&find_sizes, wide_sets>();
+  Sizes sizes;
+  measure(part.rows.data(), static_cast<int>(changes.rows()), order_, x_, &sizes);
+  Convergence found{.is_there = true, .wanted_order = lowest_order};
+  for (int k = 0; k < part.count; ++k) {
+    if (!changes.col(part.first + k).allFinite()) continue;
+    const double allowed = tolerance * sizes.first[k];
+    const double last = std::max(sizes.last[k], 0.1 * epsilon * sizes.first[k]);
+    const double squared_ratio = std::sqrt(last / sizes.before[k]);
+    double left_out = last * squared_ratio / (1.0 - squared_ratio);
+    if (sizes.first[k] == 0.0 && last == 0.0) continue;
+    if (!(squared_ratio < 0.7 && sizes.first[k] < largest_size)) return none;
+    found.is_there &= left_out <= allowed;
+    int order = order_;
+    for (; left_out > safety * allowed; left_out *= squared_ratio) order += 2;
+    for (; order > lowest_order && left_out <= safety * squared_ratio * allowed; order -= 2) {
+      left_out /= squared_ratio;
+    }
+    found.wanted_order = std::max(found.wanted_order, order);
+  }
+  return found;
+}
+
+void ChangesBySeries::get(double share, Matrix& changes) const {
+  static const auto sum = fastest<&sum_slopes, wide_sets>();
+  const auto size = static_cast<int>(changes.rows());
+  std::vector<double> sums(static_cast<std::size_t>(size) * names_at_once);
+  for (const Part& part : parts_) {
+    sum(part.rows.data(), size, order_, share * x_, sums.data());
+    for (Eigen::Index i = 0; i < changes.rows(); ++i) {
+      for (int k = 0; k < part.count; ++k) changes(i, part.first + k) = sums[i * names_at_once + k];
+    }
+  }
+}
+
+}  // namespace pendcore

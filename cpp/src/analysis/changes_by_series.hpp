@@ -1,0 +1,54 @@
+/// \file
+/// The changes of a motion along one step, by the Taylor series of the motion on numbers with
+/// slopes along eight names at once (dynamics/series).
+///
+/// The coefficients of a change are the slopes of the coefficients of the motion. So the series
+/// from the state and its changes at the start of a step has the changes anywhere in the step,
+/// whichever method made the step. Its order follows from how fast the slopes fall: with N the
+/// largest of the last two at the end of the step, M the largest of those four orders before, and
+/// r^4 = N/M, what is left out is taken as N r^2/(1 - r^2).
+///
+/// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
+/// numbers. Cost: for each eight names, four to six times the series of two links, and some twelve
+/// times that of a chain.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "analysis/variational_equations.hpp"
+
+namespace pendcore {
+
+class ChangesBySeries {
+ public:
+  ChangesBySeries();
+  ~ChangesBySeries();
+
+  /// Computes the series of a step of length h (s) from a state y and its changes, (2n, names),
+  /// each to a share of its size. Columns that are not finite are left so. Returns false where the
+  /// laws that are in force have no series, or the series does not converge.
+  bool expand(const VariationalEquations& equations, double t, const double* y, double h,
+              const Matrix& changes, double tolerance);
+  /// Writes the changes at a share of that step.
+  void get(double share, Matrix& changes) const;
+
+ private:
+  struct Part;
+  struct Convergence {
+    bool is_there;
+    int wanted_order;  ///< the lowest one with which the next step is likely to have it
+  };
+
+  void take_laws(const VariationalEquations& equations);
+  void set_order(int order, Eigen::Index size);
+  Convergence look_at(const Part& part, const Matrix& changes, double tolerance) const;
+
+  std::vector<Part> parts_;
+  int laws_ = 0;  ///< VariationalEquations::changes_of_laws() of the parts
+  int order_ = 0;
+  int wanted_order_ = 0;
+  double x_ = 0.0;  ///< the step in units of sigma
+};
+
+}  // namespace pendcore

@@ -1,0 +1,218 @@
+#include "dynamics/mechanism.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+#include "arithmetic/extrapolated_slope.hpp"
+#include "dynamics/equations_of_motion.hpp"
+#include "dynamics/inertia.hpp"
+#include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
+#include "pendcore/parameters.hpp"
+
+namespace pendcore {
+namespace {
+
+/// All numbers of a mechanism, in one order.
+template <class Number>
+std::vector<Number*> numbers_of(Mechanism<Number>& all) {
+  std::vector<Number*> found = {&all.gravity, &all.payload_mass, &all.payload_inertia};
+  const auto add = [&](auto&... each) { (found.push_back(&each), ...); };
+  const auto add_fields = [&](auto& constants) {
+    each_field(constants, constants, [&](Number& each, const Number&) { add(each); });
+  };
+  for (auto& body : all.bodies) {
+    add(body.mass, body.length, body.center, body.inertia, body.armature);
+  }
+  for (auto& effect : all.effects) {
+    if (effect.couple) {
+      add_fields(*effect.couple);
+      add(effect.couple->gain);
+    }
+    if (effect.law) {
+      std::visit(
+          [&]<class Law>(Law& law) {
+            add_fields(law);
+            std::apply(add, Law::shared(law));
+          },
+          *effect.law);
+    }
+    if (effect.moves_pivot) add_fields(effect.pivot);
+    for (auto& wave : effect.waves) add(wave.angular_frequency, wave.phase);
+  }
+  return found;
+}
+
+/// A mechanism with the same effects, whose numbers are still to be set.
+template <class Number>
+Mechanism<Number> alike(const Mechanism<double>& plain) {
+  Mechanism<Number> result;
+  result.bodies.resize(plain.bodies.size());
+  for (const auto& from : plain.effects) {
+    auto& to = result.effects.emplace_back();
+    to.place = from.place;
+    if (from.couple) to.couple.emplace();
+    if (from.law) {
+      to.law = std::visit([]<template <class> class Law>(
+                              const Law<double>& /*law*/) { return LawOn<Number>(Law<Number>{}); },
+                          *from.law);
+    }
+    to.moves_pivot = from.moves_pivot;
+    to.pivot.x.wave = from.pivot.x.wave;
+    to.pivot.y.wave = from.pivot.y.wave;
+    to.waves.resize(from.waves.size());
+  }
+  return result;
+}
+
+/// Whether a change of a limit cuts a table into other pieces: by the one that holds from time t,
+/// in its middle, because its ends move.
+bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool forward) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (!std::isfinite(effect.last_time())) continue;
+    const double next = effect.next_time(t, forward);
+    const double within = std::isfinite(next) ? 0.5 * (t + next) : t;
+    const auto mode = [&](const EffectBehaviour& one) {
+      return one.mode_at(within, 0.0, 0.0, forward);
+    };
+    if (mode(*changed.effects[i]) != mode(effect)) return true;
+  }
+  return false;
+}
+
+/// The slopes of all numbers of a mechanism along one of some parameters, which have these values.
+std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& modes, double t,
+                                 bool forward, const ParameterChoice& choice,
+                                 std::vector<double> values, const std::vector<std::string>& names,
+                                 std::size_t which) {
+  const double value = values[which];
+  Mechanism<double> here = mechanism(scene, modes);
+  const std::vector<double*> numbers = numbers_of(here);
+  const auto numbers_at = [&](double at) {
+    Scene copy = scene;
+    values[which] = at;
+    choice.set(copy, values);
+    std::vector<double> result;
+    if (has_other_pieces(scene, copy, t, forward)) return result;
+    Mechanism<double> there = mechanism(copy, modes);
+    result.reserve(numbers.size());
+    for (const double* each : numbers_of(there)) result.push_back(*each);
+    return result;
+  };
+  std::vector<double> slopes(numbers.size());
+  const auto take_slopes = [&](double h) {
+    std::array<std::vector<double>, steps_of_slope> ahead, behind;
+    for (int k = 0; k < steps_of_slope; ++k) {
+      ahead[k] = numbers_at(value + std::ldexp(h, -k));
+      behind[k] = numbers_at(value - std::ldexp(h, -k));
+      if (ahead[k].empty() || behind[k].empty()) return false;
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto slope = extrapolated_slope(
+          *numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
+          {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
+      if (!slope) return false;
+      slopes[i] = *slope;
+    }
+    return true;
+  };
+  // An infinite limit stays so, and changes nothing. The steps are powers of two, so that they are
+  // exact, and shrink where a corner is near.
+  double h = value == 0.0 ? 1.0 : std::ldexp(1.0, std::ilogb(value) - 4);
+  const double smallest = 0x1p-20 * h;
+  while (std::isfinite(value) && !take_slopes(h)) {
+    h *= 0x1p-4;
+    if (h >= smallest) continue;
+    throw std::invalid_argument("parameter \"" + names[which] +
+                                "\": a law has a corner at this value: there is no derivative by "
+                                "it; it has one at a slightly larger or smaller value");
+  }
+  return slopes;
+}
+
+}  // namespace
+
+std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
+  std::vector<int> modes;
+  for (const Effect& effect : scene.effects) modes.push_back(mode_at(*effect, t, q, qd, true));
+  return modes;
+}
+
+Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
+  const Inertia inertia(scene);
+  Mechanism<double> result{.gravity = scene.gravity,
+                           .payload_mass = inertia.payload_mass,
+                           .payload_inertia = inertia.payload_inertia};
+  for (std::size_t i = 0; i < scene.links.size(); ++i) {
+    const Link& link = scene.links[i];
+    result.bodies.push_back(
+        {link.mass, link.length, link.center, link.inertia, inertia.links[i].rotor});
+  }
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    auto& acting = result.effects.emplace_back();
+    acting.place = std::max({effect.joint(), effect.link(), 1}) - 1;
+    const Link& link = scene.links[acting.place];
+    acting.law = effect.law(modes[i], {link.mass, link.length, link.center, scene.gravity});
+    if (!acting.law) acting.couple = effect.couple(modes[i]);
+    if (const std::optional<PivotLaw> pivot = effect.pivot_law(modes[i])) {
+      acting.moves_pivot = true;
+      acting.pivot = *pivot;
+    }
+    for (const Sinusoid& wave : effect.waves()) {
+      acting.waves.push_back({wave.angular_frequency, wave.phase});
+    }
+  }
+  return result;
+}
+
+MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes, double t,
+                               bool forward, const std::vector<std::string>& names)
+    : here_(mechanism(scene, modes)) {
+  const ParameterChoice choice(scene, names);
+  const std::vector<NamedNumber> known = parameters(scene);
+  std::vector<double> values;
+  values.reserve(names.size());
+  for (const std::string& name : names) {
+    values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
+  }
+  for (std::size_t which = 0; which < names.size(); ++which) {
+    slopes_.push_back(slopes_along(scene, modes, t, forward, choice, values, names, which));
+  }
+}
+
+template <class Number>
+Mechanism<Number> MechanismAlong::with_slopes(const std::vector<int>& parameters) const {
+  Mechanism<double> plain = here_;
+  auto result = alike<Number>(plain);
+  const std::vector<Number*> duals = numbers_of(result);
+  const std::vector<double*> numbers = numbers_of(plain);
+  for (std::size_t i = 0; i < duals.size(); ++i) {
+    *duals[i] = Number(*numbers[i]);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (parameters[k] < 0) continue;
+      set_lane(duals[i]->slope, static_cast<int>(k), slopes_[parameters[k]][i]);
+    }
+  }
+  return result;
+}
+
+std::vector<Mechanism<AlongParameters>> MechanismAlong::with_all_slopes() const {
+  std::vector<Mechanism<AlongParameters>> result;
+  std::vector<int> some;
+  for (std::size_t which = 0; which < slopes_.size(); ++which) {
+    some.push_back(static_cast<int>(which));
+    if (some.size() < parameters_at_once && which + 1 < slopes_.size()) continue;
+    result.push_back(with_slopes<AlongParameters>(some));
+    some.clear();
+  }
+  return result;
+}
+
+template Mechanism<AlongNames> MechanismAlong::with_slopes(const std::vector<int>&) const;
+
+}  // namespace pendcore
