@@ -1,9 +1,9 @@
 """Run pendcore beside its peers and write records, tables and figures.
 
 Solves of five cases (what accuracy costs), `stiff` (implicit steps), `chains` (forward dynamics of
-n links), `effects` (what each adds) and `ensembles` (many runs at once) are timed in turns, in one
-run each; `hard_cases` asks who is right. Each writes a record into docs/records and a page with
-figures; README.md in docs/comparison covers all solves.
+n links), `derivatives` of them, `effects` (what each adds) and `ensembles` (many runs at once) are
+timed in turns, in one run each; `hard_cases` asks who is right. Each writes a record into
+docs/records and a page with figures; README.md in docs/comparison covers all solves.
 `make compare` builds what is needed and calls this, with ONLY=... for some of them; by hand:
 
     python bench/compare/compare.py                        all that is timed, twenty minutes
@@ -25,6 +25,7 @@ import chains
 import effects
 import ensembles
 import excerpts
+import forward_derivatives
 import hard_cases
 import pages
 import solves
@@ -40,6 +41,7 @@ HARD = "hard_cases"
 MEASURE = {
     "stiff": stiff.measure,
     "chains": chains.measure,
+    "derivatives": forward_derivatives.measure,
     "effects": effects.measure,
     "ensembles": ensembles.measure,
 }
@@ -82,7 +84,8 @@ def redraw(stem: str, docs: Path) -> None:
     path = docs / PAGES[stem].page.format(stem)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(pages.page(stem, record), encoding="utf-8")
-    PAGES[stem].draw(record, path.with_suffix(".png"))
+    if draw := PAGES[stem].draw:
+        draw(record, path.with_suffix(".png"))
     if (stem, docs) == ("textbook", PROJECT / "docs"):
         excerpts.write(PROJECT, record)
     print(f"written: {path}")

@@ -40,7 +40,7 @@ def prepare(
             except Unsupported:
                 continue
         found = {
-            side: calls[side, effect.name].accelerations()
+            side: calls[side, effect.name].outcome()
             for side in (CORE, PEER)
             if (side, effect.name) in calls
         }

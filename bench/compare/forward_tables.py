@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from record import Point, Record
-from tables import NONE, Rows, listed, number, pair, table
+from tables import NONE, Rows, listed, number, pair, power, table
 
 CORE, STEP, PEER = "pendcore", "pendcore_step", "mujoco_forward"
 RUNS = {CORE: "pendcore_run", PEER: "mujoco_run"}
@@ -98,12 +98,13 @@ def longest(record: Record) -> str:
 
 
 def everybody(record: Record, metric: str) -> str:
-    """Tabulate times, or bytes a link, of all contenders."""
+    """Tabulate times, bytes a link, or errors of all contenders."""
     columns = {name: of_links(record, name, metric) for name in record.contenders}
     rows: Rows = []
     for n in lengths(record):
         values = (column.get(n) for column in columns.values())
-        rows.append([str(n), *(number(x / n if x and metric == "bytes" else x) for x in values)])
+        write, per = power if metric == "error" else number, n if metric == "bytes" else 1
+        rows.append([str(n), *(write(x / per) if x else NONE for x in values)])
     return table(["n", *(facts["label"] for facts in record.contenders.values())], rows)
 
 

@@ -28,11 +28,11 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """`draw` draws the record into a file beside the page; `record` and `page` lie in docs."""
+    """`draw` may draw the record into a file beside the page; `record` and `page` lie in docs."""
 
     template: str
     tables: ModuleType
-    draw: Callable[[Record, Path], None]
+    draw: Callable[[Record, Path], None] | None
     record: str = "records/comparison/{}.json"
     page: str = "comparison/{}.md"
 
@@ -42,6 +42,7 @@ PAGES = {
     **dict.fromkeys(overview_tables.NAMES, OF_SOLVES),
     "stiff": Page("stiff", solve_tables, figures.draw_stiff),
     "chains": Page("chains", forward_tables, forward_figures.draw_chains),
+    "derivatives": Page("derivatives", forward_tables, None),
     "effects": Page("effects", forward_tables, forward_figures.draw_effects),
     "ensembles": Page("ensembles", solve_tables, figures.draw_ensembles),
     "hard_cases": Page(

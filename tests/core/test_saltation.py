@@ -108,7 +108,7 @@ def test_bounces_without_end(restitution: float) -> None:
 
 
 @pytest.mark.few_cases
-@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55])
+@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55, 303, 304, 305])
 def test_random_runs_have_the_derivatives_of_complex_numbers(seed: int) -> None:
     verdict = judged(seed)
     assert verdict.kind == "right", verdict
@@ -190,6 +190,22 @@ def test_one_name_without_a_derivative_leaves_those_of_the_others() -> None:
         both = derivatives(scene, 2.0, [0.3, 0.5], 0.0, ["gravity", "effect[1].restitution"])
     np.testing.assert_allclose(both[:, 0], alone[:, 0], rtol=1e-9)
     assert np.isnan(both[:, 1]).all()
+
+
+def test_a_corner_of_one_name_leaves_the_others() -> None:
+    """From 0.5 s on, the table is just at its limit."""
+    table = E.Table(t=(0, 0.5, 1, 3), torque=(0, 3, 3, 0))
+    scene = TEXTBOOK.replace(effects=[E.Motor(joint=1, table=table, limit=3.0)])
+
+    def found(names: list[str]) -> Any:
+        return pc.simulate(scene, (0, 2), [0.3, 0.5], t_eval=[0.4, 2], sensitivities=names)
+
+    told = r'none of "effect\[1\]\.limit" after t = 0\.5 s: a law has a corner at this value'
+    with pytest.warns(pc.PendcoreWarning, match=told):
+        both = found(["q0[1]", "effect[1].limit", "gravity"]).sensitivities
+    np.testing.assert_array_equal(both[0, :, 1], 0.0)
+    assert np.isnan(both[1, :, 1]).all()
+    np.testing.assert_allclose(both[:, :, [0, 2]], found(["q0[1]", "gravity"]).sensitivities, 1e-12)
 
 
 # Where they are kept ----------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import numpy as np
 import pendcore as pc
 from described_scenes import scene_of
 from numpy.typing import NDArray
-from reference.complex_runs import LITTLE, Friction, HybridRun, Numbers, Range
+from reference.complex_runs import LITTLE, Friction, HybridRun, Numbers, Range, pieces
 from reference.effects import Described
 from reference.newton_euler import Body
 
@@ -33,6 +33,10 @@ class HybridCase:
     @property
     def scene(self) -> pc.Scene:
         return scene_of(self.bodies, self.gravity, self.described)
+
+
+WITH_TABLES = 300
+"""From this seed on, some motors have tables, and some joints rest at the start."""
 
 
 def drawn(seed: int) -> HybridCase:
@@ -68,6 +72,8 @@ def drawn(seed: int) -> HybridCase:
             told = {"joint": j + 1, "range": ends, "capture_speed": between(0.01, 0.3)}
             told["restitution"] = some.choice([0.0, between(0.1, 0.95), between(0.1, 0.95)])
             described.append(("joint_stop", told))
+    if seed >= WITH_TABLES:
+        put_to_rest(some, q0, qd0, described)
     joint = some.randint(1, n)
     smooth: list[Described] = [
         ("viscous_joint", {"joint": joint, "damping": between(0.0, 0.5)}),
@@ -79,6 +85,12 @@ def drawn(seed: int) -> HybridCase:
         ("driven_pivot", {"y": {"amplitude": between(0.01, 0.1), "angular_frequency": 7.0}}),
     ]  # fmt: skip
     described += some.sample(smooth, some.randint(0, 3))
+    if seed >= WITH_TABLES and some.random() < 0.7:
+        times = [0.0, *sorted(between(0.05, 1.9) for _ in range(some.randint(1, 4))), 2.5]
+        table = {"t": times, "torque": [between(-6.0, 6.0) for _ in times]}
+        more = {"limit": between(1.0, 5.0)} if some.random() < 0.5 else {}
+        table["hold"] = some.random() < 0.4
+        described.append(("motor", {"joint": some.randint(1, n), "table": table, **more}))
     scene = scene_of(bodies, 9.807, described)
     starts = [f"{what}[{i}]" for what in ("q0", "qd0") for i in range(1, n + 1)]
     unknown = re.compile(r"capture_speed|exponent")
@@ -93,20 +105,38 @@ def drawn(seed: int) -> HybridCase:
                       t_end=between(0.5, 2.0), changes=changes)  # fmt: skip
 
 
+def put_to_rest(
+    some: random.Random, q0: list[float], qd0: list[float], described: list[Described]
+) -> None:
+    """Let some joints begin at rest, and some of these at a stop."""
+    for j in range(len(q0)):
+        if some.random() < 0.5:
+            continue
+        qd0[j] = qd0[j - 1] if j else 0.0
+        for kind, told in described:
+            if kind == "joint_stop" and told["joint"] == j + 1 and some.random() < 0.7:
+                phi, (lower, upper) = q0[j] - (q0[j - 1] if j else 0.0), told["range"]
+                told["range"] = some.choice([(phi, upper), (lower, phi)])
+
+
 def by_complex_numbers(
-    case: HybridCase, step: float
+    case: HybridCase, changes: dict[str, float], step: float
 ) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
-    """Return the state at the end, its derivative along all changes, and the events."""
+    """Return the state at the end, its derivative along these changes, and the events."""
     numbers = Numbers(case.bodies, case.gravity, case.described, [*case.q0, *case.qd0])
     for _, told in numbers.described:
         if "range" in told:
             told["range"] = dict(zip(("lower", "upper"), told["range"], strict=True))
         if "coulomb" in told:
             told.setdefault("static", None)
-    for name, change in case.changes.items():
+            told.setdefault("stribeck_velocity", 0.1)
+    for name, change in changes.items():
         numbers.move(name, change * LITTLE)
-    friction, stops, smooth = {}, {}, []
+    friction, stops, smooth, laws = {}, {}, [], [(0.0, [])]
     for kind, told in numbers.described:
+        if "table" in told:
+            laws = [(t, [(kind, piece)]) for t, piece in pieces(told)]
+            continue
         if kind not in {"dry_joint_friction", "joint_stop"}:
             smooth.append((kind, told))
             continue
@@ -116,13 +146,14 @@ def by_complex_numbers(
         else:
             told["static"] = told["coulomb"] if told["static"] is None else told["static"]
             friction[joint] = Friction(**told)
-    run = HybridRun(rig=numbers.rig(smooth), friction=friction, stops=stops)
+    (_, rig), *later = [(t, numbers.rig([*smooth, *law])) for t, law in laws]
+    run = HybridRun(rig=rig, later=later, friction=friction, stops=stops)
     end = run.end(numbers.y, case.t_end, step)
     return end.real, end.imag / LITTLE.imag, run.events
 
 
 def by_pendcore(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], str]:
-    """Return the same of a run with sensitivities, and why there is none, if there is none."""
+    """Return the state, its derivative by each name, and what is said of those that are missing."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", pc.PendcoreWarning)
         sol = pc.simulate(
@@ -131,4 +162,4 @@ def by_pendcore(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], str]:
         )  # fmt: skip
     assert sol.sensitivities is not None
     why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))
-    return sol.y[:, -1], sol.sensitivities[-1] @ [*case.changes.values()], why
+    return sol.y[:, -1], sol.sensitivities[-1], why

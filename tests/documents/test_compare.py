@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,12 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "compare"))
 
 import chains
 import effects
+import forward_derivatives
 from cases import one_step, read_case
 from contenders.contender import Outcome, PythonRun, Unsupported
+from dense_chain import DenseChain
 from equal_error import SIDES, compare, envelope, time_at
-from forward_dynamics import ChainScene
+from forward_dynamics import ChainScene, chain_scene
 from measure import achieved, interleave
 from trajectory_error import end_error, energy_error, position_error
 
@@ -170,6 +173,25 @@ def test_dense_equations_of_chains_are_right(q, qd, gravity, expected):
     np.testing.assert_allclose(chains.accelerations(scene), expected, rtol=1e-14)
 
 
+def test_dense_equations_of_chains_have_these_derivatives():
+    scene, by = chain_scene(3), 1e-5
+    found = forward_derivatives.derivatives(scene, at_joints=False)
+    for name, known in zip(("q", "qd"), found, strict=False):
+        here = getattr(scene, name)
+        ends = [
+            [chains.accelerations(replace(scene, **{name: here + move})) for move in by * np.eye(3)]
+            for by in (by, -by)
+        ]
+        differences = np.subtract(*ends).T / (2 * by)
+        np.testing.assert_allclose(known, differences, rtol=0, atol=1e-8 * np.abs(known).max())
+    chain = DenseChain(masses=scene.masses, lengths=scene.lengths, gravity=scene.gravity)
+    mass = chain.mass_matrix(scene.q[0])
+    np.testing.assert_allclose(mass @ found[2], [[1, -1, 0], [0, 1, -1], [0, 0, 1]], atol=1e-14)
+    at_joints = forward_derivatives.derivatives(scene, at_joints=True)
+    np.testing.assert_allclose(at_joints.cumsum(axis=1)[:2], found[:2] @ np.tri(3), atol=1e-12)
+    np.testing.assert_allclose(at_joints.cumsum(axis=1)[2], found[2], atol=1e-14)
+
+
 class Side:
     """A contender that answers with given accelerations."""
 
@@ -180,7 +202,7 @@ class Side:
         if scene.effect not in self.answers:
             raise Unsupported(scene.effect)
         answer = np.array(self.answers[scene.effect])
-        return type("Calls", (), {"accelerations": lambda _: answer})()
+        return type("Calls", (), {"outcome": lambda _: answer})()
 
 
 def test_sides_that_disagree_or_do_not_feel_an_effect_are_not_compared():

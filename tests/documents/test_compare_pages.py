@@ -17,6 +17,7 @@ import chains  # noqa: E402
 import compare  # noqa: E402
 import effects  # noqa: E402
 import excerpts  # noqa: E402
+import forward_derivatives  # noqa: E402
 import forward_tables  # noqa: E402
 import overview_tables  # noqa: E402
 import pages  # noqa: E402
@@ -64,6 +65,7 @@ LOST = [
     ("textbook", "heyoka", {"minimum_us": 0.1}, "slower than the best peer at 1e-2 (heyoka"),
     ("chains", "mujoco_parts", {"minimum_ns": 0.01}, "n = 10: MuJoCo parts of mj_forward takes"),
     ("chains", "pendcore", {"minimum_ns": 3.0}, "promised is at most 1/5: **missed**"),
+    ("derivatives", "pendcore", {"minimum_ns": 9.0}, "n = 2: Pinocchio, computeABADerivatives"),
     ("effects", "one_effect_more", {"instructions": 1.1}, "**missed**"),
     ("effects", "mujoco_forward", {"minimum_ns": 1e-3}, "viscous joint in a call"),
 ]
@@ -127,21 +129,25 @@ def test_a_quick_run_of_solves_measures_whom_it_finds(tmp_path, monkeypatch):
 
 @needs_contenders
 @pytest.mark.outside_build
-def test_quick_runs_of_chains_and_effects_measure_pendcore(tmp_path, monkeypatch):
+def test_quick_runs_of_right_hand_sides_measure_pendcore(tmp_path, monkeypatch):
     try:
         find_executable("forward_dynamics_pendcore")
     except ImportError as absence:
         pytest.skip(str(absence))
-    for module in (chains, effects):
+    for module in (chains, forward_derivatives, effects):
         monkeypatch.setattr(module, "BURST_SECONDS", 1e-4)
     monkeypatch.setattr(chains, "QUICK_LENGTHS", (2, 10, 100, 1000))
-    for stem in ("chains", "effects"):
+    for stem in ("chains", "derivatives", "effects"):
         assert compare.main(["--only", stem, "--quick", "--output", str(tmp_path)]) == 0
     links = Record.read(tmp_path / "records/comparison/chains.json")
     assert len(forward_tables.of_links(links, "pendcore", "minimum_ns")) == 4
     # No memory beyond O(n): ten times the links, ten times the bytes or less (if glibc tells).
     held = forward_tables.of_links(links, "pendcore", "bytes")
     assert not held or held[1000] < 11 * held[100]
+    linear = Record.read(tmp_path / "records/comparison/derivatives.json")
+    errors = forward_tables.of_links(linear, "pendcore", "error")
+    assert len(errors) == 3
+    assert max(errors.values()) < 1e-12
     measured = Record.read(tmp_path / "records/comparison/effects.json")
     ours = {name for name, facts in measured.cases.items() if facts["ours"]}
     assert {name for name in measured.cases if measured.points("pendcore", name)} == ours

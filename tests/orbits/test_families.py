@@ -93,6 +93,11 @@ def test_a_family_that_does_not_come_there_says_how_far_it_came():
     last = told.value.orbits[-1]  # close to the motion that comes to rest upright
     assert last.energy == pytest.approx(ROD.gravity / 2, rel=1e-5)
     assert last.energy < ROD.gravity / 2
+    with pytest.raises(ValueError, match=r"until = -20: must be > -19.614 \(J\): links that hang"):
+        small.continued("energy", -20.0)
+    down_up = pc.equilibria(TEXTBOOK)[1].orbit(1)
+    with pytest.raises(RuntimeError, match=r"shrinks to .* \[1\.5708, -1\.5708\], .* -9\.807 J"):
+        down_up.continued("energy", -9.9)
     with pytest.raises(ValueError, match=r"name = 'gravty': did you mean 'gravity'\?"):
         small.continued("gravty", 1.0)
     fast = pc.periodic_orbit(driven(4.6), *np.split(settled(4.6, np.array([np.pi / 2, 0])), 2))

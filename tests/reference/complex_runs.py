@@ -77,6 +77,32 @@ class Numbers:
                    effects=effects, arithmetic=COMPLEX)  # fmt: skip
 
 
+def pieces(told: dict[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """The laws of a motor that has a table, one after another, and when each begins.
+
+    They begin at the times of the table, and where its torque meets the limit.
+    """
+    limit, joint = told.get("limit", np.inf), told["joint"]
+    points = zip(told["table"]["t"], told["table"]["torque"], strict=True)
+    for (begin, a), (end, b) in itertools.pairwise(points):
+        if told["table"].get("hold"):
+            b = a
+        line = {"table": {"t": (begin, end), "torque": (a, b)}}
+        cuts = [begin, end]
+        for meets in (limit, -limit):
+            if min(a, b) < meets.real < max(a, b):
+                cuts.append(begin + (meets - a) / (b - a) * (end - begin))
+        cuts.sort(key=lambda t: t.real)
+        for first, last in itertools.pairwise(cuts):
+            middle = (first.real + last.real) / 2
+            torque = a + (b - a) * (middle - begin) / (end - begin)
+            is_cut = abs(torque) > limit.real
+            yield (
+                first,
+                {"joint": joint, **({"constant": np.sign(torque) * limit} if is_cut else line)},
+            )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Friction:
     """Dry friction with Stribeck's effect; numbers may be complex."""
@@ -107,6 +133,8 @@ class HybridRun:
     """A rig whose joints, from 0, may have friction or stops; its smooth effects are the rig's."""
 
     rig: Rig
+    later: list[tuple[Any, Rig]] = field(default_factory=list)
+    """What it is from other times on."""
     friction: dict[int, Friction]
     stops: dict[int, Range]
     held: set[int] = field(default_factory=set)
@@ -118,11 +146,13 @@ class HybridRun:
         """Return the state at t_end from that at 0."""
         self.hold_and_slide(0.0, y)
         t: Any = 0.0
+        later = [one for one in self.later if one[0].real < t_end]
         while True:
-            h = min(step, t_end - t.real)
-            is_last = h == t_end - t.real
+            last = later[0][0] if later else t_end
+            h = min(step, last.real - t.real)
+            is_last = h == last.real - t.real
             if is_last:
-                h = t_end - t
+                h = last - t
             with np.errstate(all="ignore"):  # beyond rest, Stribeck's law grows like an exponential
                 there = midpoint_rule(self.rates, t, y, h)
                 while not np.isfinite(there).all():
@@ -135,9 +165,13 @@ class HybridRun:
                 if g(t + h, there).real < 0
             ]
             if not roots:
-                if is_last:
-                    return there
                 t, y = t + h, there
+                if is_last and not later:
+                    return y
+                if is_last:
+                    self.rig = later.pop(0)[1]
+                    self.events.append(f"table at {t.real:.6f}")
+                    self.hold_and_slide(t, y)
                 continue
             h, name, j, _ = min(roots, key=lambda one: one[0].real)
             y, t = midpoint_rule(self.rates, t, y, h), t + h
@@ -254,7 +288,13 @@ class HybridRun:
         n = len(y) // 2
         M = np.array(self.rig.mass_matrix(list(y[:n])))
         qd = y[n:]
-        touching = [j for j in self.stops if self.side(j, y)]
+        # A joint that only comes near strikes next, be it after 1e-13 s: the order counts.
+        touching = [
+            j
+            for j in self.stops
+            if j == striker
+            or (self.side(j, y) and (j in self.held or abs(self.relative(qd, j).real) < 1e-9))
+        ]
         e = dict.fromkeys(touching, 0.0)
         if abs(self.relative(qd, striker).real) >= self.stops[striker].capture_speed:
             e[striker] = self.stops[striker].restitution

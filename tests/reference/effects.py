@@ -114,7 +114,7 @@ class Motor(Law):
             return [sinusoid(t, self.sinusoid, instant.arithmetic)[0]]
         if self.table is not None:
             knots = [number(k) for k in self.table["t"]]
-            i = max(k for k in range(len(knots) - 1) if knots[k] <= t or k == 0)
+            i = max(k for k in range(len(knots) - 1) if k == 0 or knots[k] <= t)
             before, after = map(number, self.table["torque"][i : i + 2])
             if self.table.get("hold"):
                 return [before]

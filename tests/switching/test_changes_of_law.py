@@ -246,3 +246,19 @@ def test_joints_that_all_reverse_at_once_retrace_their_way(links):
     assert_sound(thrown, (0, 2))
     np.testing.assert_allclose(thrown(1)[:links], fallen.q[0], atol=1e-8)
     np.testing.assert_allclose(thrown.y[:, -1], fallen.y[:, -1], atol=1e-7)
+
+
+@pytest.mark.parametrize("after", [-40.0, -10.0, 20.0, 40.0])
+def test_a_jump_of_the_load_lets_a_held_joint_go(after):
+    """The run goes on as one does that begins there, even if the load falls off again at once."""
+    dry, torque = fx.DryJointFriction(joint=2, coulomb=2.3), [4.4, 4.4, after, after]
+    scene = pc.Scene.textbook().replace(effects=[dry, by_table([0, 0.05, 0.05, 1], torque)])
+    start, exactly = ([2.84, 2.66], [2.6, 2.6]), {"rtol": 1e-10, "atol": 1e-12}
+    till_then = pc.simulate(scene, (0, 0.05), *start, **exactly)
+    assert till_then.qd[-1, 0] == till_then.qd[-1, 1]  # held
+    there = till_then.q[-1], till_then.qd[-1]
+    from_then = scene.replace(effects=[dry, steady(after)])
+    on = pc.simulate(from_then, (0.05, 0.15), *there, **exactly)
+    assert abs(on.qd[-1, 0] - on.qd[-1, 1]) > 0.1
+    through = pc.simulate(scene, (0, 0.15), *start, **exactly)
+    np.testing.assert_allclose(through.y[:, -1], on.y[:, -1], rtol=0, atol=1e-8)

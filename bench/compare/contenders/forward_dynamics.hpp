@@ -14,11 +14,11 @@ inline constexpr double moment = 0.5;        // s, for laws that depend on time
 inline constexpr double user_damping = 0.1;  // N m s/rad, on the rate of link 2: a user's function
 
 // Each call waits for the one before; its parts are right-hand sides. The outcome is qdd (n) at the
-// first state.
+// first state; of derivatives, it is those by angles, rates and torques, (n, 3n), row by row.
 class Calls : public Prepared {
  public:
   Calls() { shortest_batch_ = 1e-5; }  // long compared with reading the clock
-  std::string outcome() final { return words(accelerations()); }
+  std::string outcome() override { return words(accelerations()); }
 
  protected:
   virtual Numbers accelerations() { throw Unsupported("it says nothing of the accelerations"); }

@@ -107,6 +107,42 @@ class Steps : public Calls {
   double error_ = 0;
 };
 
+// A and B, (2n, 2n) and (2n, n), with a torque in every joint.
+class Linearizations : public Calls {
+ public:
+  explicit Linearizations(const Given& given)
+      : states_(given["q"].size() / given.n()), equations_(scene_of(given)) {
+    const auto n = static_cast<Eigen::Index>(given.n());
+    for (std::size_t k = 0; k < states_; ++k) {
+      q_.emplace_back(Eigen::Map<const pendcore::Vector>(&given["q"][k * given.n()], n));
+      qd_.emplace_back(Eigen::Map<const pendcore::Vector>(&given["qd"][k * given.n()], n));
+    }
+    for (int joint = 1; joint <= n; ++joint) torques_.push_back({.joint = joint});
+  }
+  void make(int count) override {
+    for (; count > 0; --count) {
+      const pendcore::Linearization found = at(state_);
+      state_ = next(state_, found.A(found.A.rows() - 1, 0), states_);
+    }
+  }
+  std::string outcome() override {
+    const pendcore::Linearization found = at(0);
+    const auto n = found.B.cols();
+    pendcore::Matrix both(n, 3 * n);
+    both << found.A.bottomRows(n), found.B.bottomRows(n);
+    return words({both.data(), both.data() + both.size()});
+  }
+
+ private:
+  pendcore::Linearization at(std::size_t state) {
+    return equations_.linearize(moment, q_[state], qd_[state], torques_);
+  }
+  std::size_t states_, state_ = 0;
+  std::vector<pendcore::Vector> q_, qd_;
+  pendcore::Equations equations_;
+  std::vector<pendcore::Input> torques_;
+};
+
 // The kernel of the bare double pendulum, named by its type, without any code for effects.
 std::unique_ptr<Calls> steps_of_kernel(const Given& given) {
   using namespace pendcore;
@@ -134,7 +170,9 @@ std::vector<Contender> contenders() {
           entry<Steps>("pendcore_step", "pendcore in a step", "attempted steps of dopri5"),
           {"pendcore_kernel", "pendcore's kernel", "steps of its type", steps_of_kernel},
           entry<WholeRuns>("pendcore_run", "pendcore in a run",
-                           "pendcore::simulate, dopri5, 5 s, rtol = atol = 1e-9")};
+                           "pendcore::simulate, dopri5, 5 s, rtol = atol = 1e-9"),
+          entry<Linearizations>("pendcore_derivatives", "pendcore, linearize",
+                                "pendcore::Equations::linearize")};
 }
 
 }  // namespace contenders

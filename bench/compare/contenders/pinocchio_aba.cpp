@@ -1,5 +1,7 @@
-// Pinocchio's articulated-body algorithm at its best: the joint type is known at compile time, in a
-// collection of its own (a fifth quicker than the default one of twenty-five types), header-only.
+// Pinocchio's articulated-body algorithm and its derivatives at their best: the joint type is known
+// at compile time, in a collection of its own (a fifth quicker than the default one of twenty-five
+// types), header-only.
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <utility>
 
@@ -66,11 +68,12 @@ class PinocchioCalls : public Calls {
     return of_links({found.data(), n_});
   }
 
- private:
+ protected:
+  using State = Eigen::Map<const Eigen::VectorXd>;
+  State phi(std::size_t state) const { return {&phi_[state * n_], last_ + 1}; }
+  State phid(std::size_t state) const { return {&phid_[state * n_], last_ + 1}; }
   const Eigen::VectorXd& evaluate(std::size_t state) {
-    const auto n = static_cast<Eigen::Index>(n_);
-    const Eigen::Map<const Eigen::VectorXd> phi(&phi_[state * n_], n), phid(&phid_[state * n_], n);
-    return pin::aba(model_, data_, phi, phid, tau_, convention_);
+    return pin::aba(model_, data_, phi(state), phid(state), tau_, convention_);
   }
 
   std::size_t n_, states_, state_ = 0;
@@ -80,6 +83,38 @@ class PinocchioCalls : public Calls {
   Model model_;
   Data data_;
   Eigen::VectorXd tau_;
+};
+
+// d phidd/d phi, d phidd/d phid and M^-1, of the joints' angles. The accelerations come first, by
+// the same recursion or by aba.
+class PinocchioDerivatives : public PinocchioCalls {
+ public:
+  PinocchioDerivatives(const Given& given, bool after_aba)
+      : PinocchioCalls(given, pin::Convention::WORLD), after_aba_(after_aba) {}
+  void make(int count) override {
+    for (; count > 0; --count) {
+      differentiate(state_);
+      state_ = next(state_, data_.ddq_dq(last_, last_), states_);
+    }
+  }
+  std::string outcome() override {
+    differentiate(0);
+    const Eigen::Index n = last_ + 1;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> found(n, 3 * n);
+    found << data_.ddq_dq, data_.ddq_dv, data_.Minv;
+    return words({found.data(), found.data() + found.size()});
+  }
+
+ private:
+  void differentiate(std::size_t state) {
+    if (after_aba_) {
+      evaluate(state);
+      pin::computeABADerivatives(model_, data_);
+    } else {
+      pin::computeABADerivatives(model_, data_, phi(state), phid(state), tau_);
+    }
+  }
+  bool after_aba_;
 };
 
 Contender entry(const std::string& word, pin::Convention convention) {
@@ -96,10 +131,22 @@ Contender entry(const std::string& word, pin::Convention convention) {
           }};
 }
 
+Contender derivatives(bool after_aba) {
+  const std::string way = after_aba ? "aba and computeABADerivatives" : "computeABADerivatives";
+  return {
+      std::string("pinocchio_") + (after_aba ? "after_aba_" : "") + CONTENDER_SUFFIX "_derivatives",
+      "Pinocchio, " + way + ", " CONTENDER_ARCHITECTURE,
+      "Pinocchio " PINOCCHIO_VERSION " " + way + ", collection of one joint type, " CONTENDER_BUILD,
+      [after_aba](const Given& given) {
+        return std::make_unique<PinocchioDerivatives>(given, after_aba);
+      }};
+}
+
 }  // namespace
 
 std::vector<Contender> contenders() {
-  return {entry("local", pin::Convention::LOCAL), entry("world", pin::Convention::WORLD)};
+  return {entry("local", pin::Convention::LOCAL), entry("world", pin::Convention::WORLD),
+          derivatives(false), derivatives(true)};
 }
 
 }  // namespace contenders

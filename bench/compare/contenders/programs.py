@@ -174,8 +174,8 @@ class Calls(Prepared):
         """Return the bytes of the heap that the preparation holds, if that is known."""
         return int(self.ask("bytes")) or None
 
-    def accelerations(self) -> Array:
-        """Return qdd (n,) at the first of the scene's states."""
+    def outcome(self) -> Array:
+        """Return qdd (n,) at the first of the scene's states, or its derivatives, row by row."""
         return np.array(self.ask("outcome").split(), dtype=np.float64)
 
 

@@ -49,7 +49,16 @@ Matrix ImpactOnChanges::torques_of_changed_mass(const Numbers& q, const Vector& 
   return torques;
 }
 
-std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes) {
+void refuse_name(const std::string& name, double t, const std::string& why, Eigen::Index column,
+                 Matrix& changes, std::string& told) {
+  if (!changes.col(column).allFinite()) return;
+  changes.col(column).setConstant(std::numeric_limits<double>::quiet_NaN());
+  told.append(told.empty() ? "" : "; ")
+      .append("sensitivities: none of \"" + name + "\" after t = " + text(t) + " s: " + why);
+}
+
+std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes,
+                                    std::string& told) {
   const double* const q = change.after.data();
   const double* const before = change.before.data() + n_;
   const double* const after = change.after.data() + n_;
@@ -116,9 +125,9 @@ std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes
       const double slope = one.supports[j].stop(side).restitution;
       if (slope == 0.0) continue;
       if (stop.restitution == 0.0) {
-        changes.col(one.column).setConstant(std::numeric_limits<double>::quiet_NaN());
-        remark_ = "sensitivities: none of \"" + one.name + "\" after t = " + text(change.t) +
-                  " s: the restitution of " + joint_name(j) + " is 0, and can only grow";
+        refuse_name(one.name, change.t,
+                    "the restitution of " + joint_name(j) + " is 0, and can only grow", one.column,
+                    changes, told);
       }
       if (restitution[a] != 0.0) by_restitution[a][one.column] = slope;
     }

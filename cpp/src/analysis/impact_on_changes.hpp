@@ -20,6 +20,9 @@ inline constexpr double rounding_of_rates = 1e-9;
 inline double largest(const Matrix& numbers) {
   return numbers.size() == 0 ? 0.0 : numbers.cwiseAbs().maxCoeff();
 }
+/// Makes the changes with one name NaN, and says why, unless they are NaN.
+void refuse_name(const std::string& name, double t, const std::string& why, Eigen::Index column,
+                 Matrix& changes, std::string& told);
 inline std::string joint_name(int joint) { return "joint " + std::to_string(joint + 1); }
 
 class ImpactOnChanges {
@@ -27,10 +30,9 @@ class ImpactOnChanges {
   explicit ImpactOnChanges(const VariationalEquations& equations);
 
   /// Brings changes (2n, k) of the state before the impact, at its time, to those after it. The
-  /// laws before it are in force. Returns why there are none, or nothing.
-  std::string strike(const WatchedChange& change, Matrix& changes);
-  /// Why some names alone have none any more, or nothing: their changes are NaN.
-  const std::string& remark() const { return remark_; }
+  /// laws before it are in force. Returns why there are none, or nothing; `told` is told why some
+  /// names alone have none any more.
+  std::string strike(const WatchedChange& change, Matrix& changes, std::string& told);
 
  private:
   Matrix torques_of_changed_mass(const Numbers& q, const Vector& x, const Matrix& changes);
@@ -40,7 +42,6 @@ class ImpactOnChanges {
   Eigen::Index k_;
   JointForces forces_;  ///< on the joints that no lock holds
   InverseDynamics<AlongParameters> of_mass_;
-  std::string remark_;
 };
 
 }  // namespace pendcore

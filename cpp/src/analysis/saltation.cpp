@@ -48,7 +48,7 @@ Saltation::Saltation(VariationalEquations& equations)
       impact_(equations) {}
 
 std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
-  take_laws(change);
+  take_laws(change, changes);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto refuse_all = [&](const std::string& why) {
     changes.setConstant(none);
@@ -107,17 +107,17 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
     last_ = change.t;
     last_jumped_ = false;
     was_given_ = true;
-    take_laws(change);
+    take_laws(change, changes);
     return is_continuous ? "" : border(change);
   }
   const JointGuard guard = *change.guard;
   // What holds a joint takes a jump of the load, and may let it go at that given time.
   if (is_again && was_given_ && !guard.is_linear()) {
-    take_laws(change);
+    take_laws(change, changes);
     return border(change);
   }
   if (is_continuous) {
-    take_laws(change);
+    take_laws(change, changes);
     return {};
   }
   if (is_again) return "two of its laws change at that time";
@@ -136,16 +136,23 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   const Vector shift = found->by_name / -found->slope;
   Matrix after = changes + f * shift.transpose();
   if (change.jumped) {
-    if (std::string why = impact_.strike(change, after); !why.empty()) return why;
+    if (std::string why = impact_.strike(change, after, remark_); !why.empty()) return why;
   }
   changes = after - f_after * shift.transpose();
-  take_laws(change);
+  take_laws(change, changes);
   settle(changes);
   return border(change);
 }
 
-void Saltation::take_laws(const WatchedChange& change) {
+void Saltation::take_laws(const WatchedChange& change, Matrix& changes) {
   equations_.take_laws(change.t, change.equations, change.forward);
+  const std::vector<bool>& corners = equations_.mechanism_along().corners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!corners[i]) continue;
+    const Eigen::Index column = equations_.parameters()[i].column;
+    refuse_name(equations_.names()[static_cast<std::size_t>(column)], change.t, corner_of_a_law,
+                column, changes, remark_);
+  }
 }
 
 /// Whether a change that comes at once is no coincidence: friction stops a joint that an impact has
@@ -231,6 +238,7 @@ std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedCh
     found.by_name[column] = sign * *slope;
   }
   for (const auto& parameter : equations_.parameters()) {
+    if (!changes.col(parameter.column).allFinite()) continue;
     const ParameterChoice choice(scene, {parameter.name});
     const double value = parameter.value;
     const auto changed = [&](double h) {
@@ -264,7 +272,8 @@ std::string Saltation::border(const WatchedChange& change) {
     const Hold& hold = joints.holds()[j];
     if (joints.is_held(j)) {
       const double room = std::min(torques[j] - hold.least, hold.most - torques[j]);
-      if (room > rounding_of_rates * joints.torque_size(j)) continue;
+      // Far beyond its limit, after a jump of the load, the joint is let go next.
+      if (std::abs(room) > rounding_of_rates * joints.torque_size(j)) continue;
     } else {
       const bool may_be_held =
           !support.friction_effects.empty() || joints.contact(j, q) != Side::none;

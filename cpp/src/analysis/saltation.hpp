@@ -22,6 +22,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "analysis/impact_on_changes.hpp"
 #include "analysis/variational_equations.hpp"
@@ -40,8 +42,8 @@ class Saltation {
   /// Takes the laws after a change, and brings the changes there. Returns why there are none, or
   /// nothing.
   std::string pass(const WatchedChange& change, Matrix& changes);
-  /// Why some names alone have none any more, or nothing.
-  const std::string& remark() const { return impact_.remark(); }
+  /// Why some names alone have none any more since this was asked last, or nothing.
+  std::string take_remark() { return std::exchange(remark_, {}); }
 
  private:
   /// The change of g with each name, (k), and its slope in time.
@@ -54,7 +56,7 @@ class Saltation {
                                    const Matrix& changes);
   std::optional<Crossing> crossing_of_torque(const WatchedChange& change, const Vector& f,
                                              const Matrix& changes);
-  void take_laws(const WatchedChange& change);
+  void take_laws(const WatchedChange& change, Matrix& changes);
   bool follows_the_last(const WatchedChange& change) const;
   std::string border(const WatchedChange& change);
   void settle(Matrix& changes) const;
@@ -63,6 +65,7 @@ class Saltation {
   int n_;
   Eigen::Index k_;
   ImpactOnChanges impact_;
+  std::string remark_;
   double last_ = never;       ///< s, when the laws last changed with a jump of rates or state
   bool was_given_ = false;    ///< at a time that no state moves
   bool last_jumped_ = false;  ///< by an impact

@@ -225,8 +225,8 @@ void Sensitivities::Variation::change_laws(const WatchedChange& change) {
         is_over = !now.array().isFinite().any();
       } else if (const std::string why = saltation->pass(change, now); !why.empty()) {
         refuse_from(change.t, why);
-      } else if (refusal.empty()) {
-        refusal = saltation->remark();
+      } else if (const std::string told = saltation->take_remark(); !told.empty()) {
+        refusal.append(refusal.empty() ? "" : "; ").append(told);
       }
     } catch (const std::invalid_argument& error) {
       refuse_from(change.t, error.what());

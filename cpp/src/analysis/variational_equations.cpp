@@ -141,6 +141,7 @@ void VariationalEquations::choose_laws(double t, const double* y) {
   if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
   modes_ = modes_at(scene_, t, y, y + n_);
   put_along(t, true);
+  along_->refuse_corners();
 }
 
 void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, bool forward) {

@@ -137,9 +137,12 @@ PENDCORE_INLINE void store(double* to, const Real& x) {
   __builtin_memcpy(to, &x, sizeof x);
 }
 
-/// Joins two packs of two into one of four; low_half and high_half take a half of a pack.
+/// Joins two packs into one; low_half and high_half take a half of a pack.
 PENDCORE_INLINE Pack<4> joined(const Pack<2>& low, const Pack<2>& high) {
   return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+}
+PENDCORE_INLINE Pack<8> joined(const Pack<4>& low, const Pack<4>& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 PENDCORE_INLINE Pack<2> low_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 0, 1); }
 PENDCORE_INLINE Pack<2> high_half(const Pack<4>& x) { return __builtin_shufflevector(x, x, 2, 3); }
@@ -164,6 +167,12 @@ extern "C" [[gnu::const]] Pack<2> pendcore_fma(Pack<2> a, Pack<2> b, Pack<2> c) 
 PENDCORE_INLINE bool is_in_clone_with_fma() noexcept {
   using Integers = pack_detail::Vector<2>::Integers;
   return __builtin_constant_p(__builtin_ia32_pcmpeqq(Integers{}, Integers{})[0]);
+}
+/// Whether it is a clone for x86-64-v4, by an exchange of AVX-512 in the same way.
+PENDCORE_INLINE bool is_in_clone_with_wide_fma() noexcept {
+  constexpr unsigned char every_lane = 0xff;
+  return __builtin_constant_p(
+      __builtin_ia32_shufpd512_mask(Pack<8>{}, Pack<8>{}, 0, Pack<8>{}, every_lane)[0]);
 }
 #endif
 
@@ -199,10 +208,14 @@ PENDCORE_INLINE Real fma(const Real& a, const Real& b, const Real& c) noexcept {
     return __builtin_fma(a, b, c);
   } else {
 #if PENDCORE_NAMES_FMA
-    if constexpr (width == 8) {  // in lanes alone, which need x86-64-v4
+    if constexpr (width == 8) {
       constexpr unsigned char every_lane = 0xff;
       constexpr int rounds_as_usual = 4;
-      return __builtin_ia32_vfmaddpd512_mask(a, b, c, every_lane, rounds_as_usual);
+      if (is_in_clone_with_wide_fma()) {
+        return __builtin_ia32_vfmaddpd512_mask(a, b, c, every_lane, rounds_as_usual);
+      }
+      return joined(fma(low_half(a), low_half(b), low_half(c)),
+                    fma(high_half(a), high_half(b), high_half(c)));
     } else if constexpr (width == 4) {
       if (is_in_clone_with_fma()) return __builtin_ia32_vfmaddpd256(a, b, c);
       return joined(pendcore_fma(low_half(a), low_half(b), low_half(c)),

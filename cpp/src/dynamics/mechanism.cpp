@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <type_traits>
 
@@ -84,11 +85,12 @@ bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool f
   return false;
 }
 
-/// The slopes of all numbers of a mechanism along one of some parameters, which have these values.
-std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& modes, double t,
-                                 bool forward, const ParameterChoice& choice,
-                                 std::vector<double> values, const std::vector<std::string>& names,
-                                 std::size_t which) {
+/// The slopes of all numbers of a mechanism along one of some parameters, which have these values;
+/// nothing where a law has a corner.
+std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::vector<int>& modes,
+                                                double t, bool forward,
+                                                const ParameterChoice& choice,
+                                                std::vector<double> values, std::size_t which) {
   const double value = values[which];
   Mechanism<double> here = mechanism(scene, modes);
   const std::vector<double*> numbers = numbers_of(here);
@@ -126,10 +128,7 @@ std::vector<double> slopes_along(const Scene& scene, const std::vector<int>& mod
   const double smallest = 0x1p-20 * h;
   while (std::isfinite(value) && !take_slopes(h)) {
     h *= 0x1p-4;
-    if (h >= smallest) continue;
-    throw std::invalid_argument("parameter \"" + names[which] +
-                                "\": a law has a corner at this value: there is no derivative by "
-                                "it; it has one at a slightly larger or smaller value");
+    if (h < smallest) return std::nullopt;
   }
   return slopes;
 }
@@ -172,7 +171,7 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
 
 MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes, double t,
                                bool forward, const std::vector<std::string>& names)
-    : here_(mechanism(scene, modes)) {
+    : names_(names), here_(mechanism(scene, modes)) {
   const ParameterChoice choice(scene, names);
   const std::vector<NamedNumber> known = parameters(scene);
   std::vector<double> values;
@@ -181,8 +180,18 @@ MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes
     values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
   }
   for (std::size_t which = 0; which < names.size(); ++which) {
-    slopes_.push_back(slopes_along(scene, modes, t, forward, choice, values, names, which));
+    const auto slopes = slopes_along(scene, modes, t, forward, choice, values, which);
+    corners_.push_back(!slopes);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    slopes_.push_back(slopes.value_or(std::vector(numbers_of(here_).size(), none)));
   }
+}
+
+void MechanismAlong::refuse_corners() const {
+  const auto found = std::ranges::find(corners_, true);
+  if (found == corners_.end()) return;
+  throw std::invalid_argument("parameter \"" + names_[found - corners_.begin()] +
+                              "\": " + corner_of_a_law);
 }
 
 template <class Number>

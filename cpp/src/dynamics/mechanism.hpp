@@ -50,14 +50,17 @@ std::vector<int> modes_at(const Scene& scene, double t, const double* q, const d
 
 Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes);
 
+inline constexpr const char* corner_of_a_law =
+    "a law has a corner at this value: there is no derivative by it; it has one at a slightly "
+    "larger or smaller value";
+
 /// A mechanism, and how its numbers change with some parameters (pendcore/parameters.hpp), from a
 /// time on. What other parameters of the list give stays as it is: the centre of a rod that is
 /// named does not follow its length. Slopes are right to some 13 digits: the constants of laws are
 /// smooth functions of parameters, whose differences are extrapolated.
 class MechanismAlong {
  public:
-  /// Throws std::invalid_argument for a name that the scene does not have, and for a value at which
-  /// a law has a corner.
+  /// Throws std::invalid_argument for a name that the scene does not have.
   MechanismAlong(const Scene& scene, const std::vector<int>& modes, double t, bool forward,
                  const std::vector<std::string>& names);
 
@@ -68,9 +71,16 @@ class MechanismAlong {
   /// Those along all of them, four in each mechanism.
   std::vector<Mechanism<AlongParameters>> with_all_slopes() const;
 
+  /// Of which of them a law has a corner: slopes along these are NaN.
+  const std::vector<bool>& corners() const { return corners_; }
+  /// Throws std::invalid_argument if there is one.
+  void refuse_corners() const;
+
  private:
+  std::vector<std::string> names_;
   Mechanism<double> here_;
   std::vector<std::vector<double>> slopes_;  ///< along each parameter, of all numbers
+  std::vector<bool> corners_;
 };
 
 }  // namespace pendcore

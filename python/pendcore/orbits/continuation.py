@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pendcore import Scene
 from pendcore.messages import Floats
 from pendcore.orbits.shooting import (
     GROWTH,
@@ -15,6 +16,8 @@ from pendcore.orbits.shooting import (
     NotClosedError,
     Shooting,
     tangent_of,
+    total_energy,
+    velocity,
 )
 
 SHORTEST = 1e-6
@@ -39,6 +42,10 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
     Steps are in the units of `System.columns`, those of the states over all arcs, so that they mean
     the same however many arcs there are.
     """
+    if shooting.free == "energy" and until <= (least := _least_energy(shooting.scene)):
+        raise ValueError(
+            f"until = {until:.6g}: must be > {least:.6g} (J): links that hang at rest have no less"
+        )
     here, found = shooting.closed(arcs), list[Closed]()
     onward = np.sign(until - arcs.value)
     step, ahead, stays = longest / 4, _ends(here.tangent, arcs), 0
@@ -52,6 +59,8 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
             there = shooting.closed(guess, tangent)
             if abs(_ends(there.tangent, there.arcs) @ _ends(tangent, here.arcs)) < 0.5:
                 raise NotClosedError("it turns too fast")
+            if at_rest := _rest_between(shooting, here.arcs, there.arcs):
+                return Family(found, at_rest)
             if (there.arcs.value - until) * (here.arcs.value - until) <= 0:
                 return Family([*found, _at(shooting, here.arcs, there.arcs, until)])
         except (NotClosedError, ValueError) as failure:  # a parameter may leave its range
@@ -72,6 +81,37 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
             here = there._replace(arcs=halves, tangent=tangent_of(shooting.system(halves, halves)))
         step = min(longest, 1.5 * step) if there.corrections <= EASY else step
     return Family(found, f"{most} orbits are all that were asked for")
+
+
+def _least_energy(scene: Scene) -> float:
+    """Return the energy of all links hanging: springs add to it, where they are not at rest."""
+    effects = [effect for effect in scene.effects if effect.kind != "torsional_spring"]
+    n = len(scene.links)
+    hanging = np.repeat([np.copysign(np.pi / 2, scene.gravity), 0.0], n)
+    return float(total_energy(scene.replace(effects=effects), hanging))
+
+
+def _rest_between(shooting: Shooting, one: Arcs, other: Arcs) -> str:
+    """Say where the family has shrunk to a point, beyond which its orbits are the same again.
+
+    Their phase is then another by half a period: the motion goes the other way.
+    """
+    if shooting.is_forced:
+        return ""
+    before, after = (
+        velocity(shooting.at(arcs.value), 0.0, arcs.states[0]) / shooting.scales
+        for arcs in (one, other)
+    )
+    if before @ after >= 0:
+        return ""
+    share = np.linalg.norm(before) / (np.linalg.norm(before) + np.linalg.norm(after))
+    value = one.value + float(share) * (other.value - one.value)
+    q = np.split(one.states[0] + share * (other.states[0] - one.states[0]), 2)[0]
+    energy = float(total_energy(shooting.at(value), np.append(q, 0 * q)))
+    return (
+        f"it shrinks to the equilibrium at q = {q.round(4).tolist()}, whose energy is "
+        f"{energy:.6g} J"
+    )
 
 
 def _ends(tangent: Floats, arcs: Arcs) -> Floats:

@@ -153,7 +153,10 @@ class PeriodicOrbit:
         ------
         RuntimeError
             If the family is lost, or does not come to ``until`` within ``most`` orbits, as after a
-            fold it may not. The attribute ``orbits`` has those that were found.
+            fold it may not; and where it shrinks to an equilibrium before that. The attribute
+            ``orbits`` has those that were found.
+        ValueError
+            If no motion has the energy ``until``.
 
         Notes
         -----

@@ -115,7 +115,10 @@ Crossing Guards::first(double t, double h, bool from_rest_too) {
   if (guards > discontinuities_.linear_guards()) interpolate_others(t, h);
   for (int k = 0; k < guards; ++k) {
     const int degree = along_step(k);
-    const double theta = first_negative(polynomial_.data(), degree);
+    // Where the load jumps, the torque that holds a joint may be beyond its limit at once.
+    const bool is_broken = k >= discontinuities_.linear_guards() &&
+                           polynomial_[0] < -discontinuities_.rounding(k, state_.data());
+    const double theta = is_broken ? 0.0 : first_negative(polynomial_.data(), degree);
     if (!(theta < found.theta) || (!from_rest_too && rises_from_rest(k))) continue;
     const Crossing crossing = where_slope_allows({k, theta}, t, h, degree);
     if (crossing.theta < found.theta) found = crossing;
