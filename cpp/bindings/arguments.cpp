@@ -171,8 +171,6 @@ py::array copy(std::span<const double> numbers, std::vector<py::ssize_t> shape) 
   return Array(std::move(shape), numbers.data());
 }
 
-py::array copy(std::span<const double> numbers) {
-  return copy(numbers, {static_cast<py::ssize_t>(numbers.size())});
-}
+py::array copy(std::span<const double> numbers) { return copy(numbers, shape(numbers.size())); }
 
 }  // namespace pendcore::bindings

@@ -96,6 +96,11 @@ void take(std::string_view name, py::handle value, Value& into) {
 bool take_plain(py::handle value, double& x);
 bool take_plain(py::handle value, std::span<double> into);
 
+template <std::integral... Sizes>
+std::vector<py::ssize_t> shape(Sizes... sizes) {
+  return {static_cast<py::ssize_t>(sizes)...};
+}
+
 /// A read-only array of that shape over numbers that `owner` keeps alive.
 py::array view(const std::vector<double>& numbers, std::vector<py::ssize_t> shape,
                py::handle owner);

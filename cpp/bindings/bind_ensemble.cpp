@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <utility>
-
 #include "arguments.hpp"
 #include "bind_options.hpp"
 #include "ensemble/lanes.hpp"

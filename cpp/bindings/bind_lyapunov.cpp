@@ -27,12 +27,10 @@ py::dict exponents(const Scene& scene, py::handle q0, py::handle qd0, py::handle
     found = lyapunov(scene, start.q0, start.qd0, start.t0, start.t_end, options);
   }
   const py::object error = monitor.close(found.status, found.message, found.error);
-  const auto rows = static_cast<py::ssize_t>(found.t.size());
-  const auto numbers_of_state = static_cast<py::ssize_t>(2 * scene.links.size());
   py::dict result;
-  result["t"] = copy(found.t, {rows});
-  result["growth"] = copy(found.growth, {rows, found.count});
-  result["states"] = copy(found.states, {rows, numbers_of_state});
+  result["t"] = copy(found.t);
+  result["growth"] = copy(found.growth, shape(found.t.size(), found.count));
+  result["states"] = copy(found.states, shape(found.t.size(), 2 * scene.links.size()));
   result["t_reached"] = found.t_reached;
   result["status"] = text(found.status).name;
   result["message"] = found.message;

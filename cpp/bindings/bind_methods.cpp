@@ -62,10 +62,9 @@ py::dict tableau(const Method& method) {
   return result;
 }
 
-template <const auto&... tables>
-py::dict tableau_named(MethodList<tables...>, std::string_view name) {
+py::dict tableau_of(const std::string& method) {
   py::dict result;
-  ((tables.info.name == name ? void(result = tableau(tables)) : void()), ...);
+  Methods::with(find_method(method).name, [&]<const auto & table>() { result = tableau(table); });
   return result;
 }
 
@@ -103,9 +102,7 @@ void bind_methods(py::module_& module) {
       },
       "A dictionary for each method, with what is known of it.");
   module.def(
-      "tableau",
-      [](const std::string& method) { return tableau_named(Methods{}, find_method(method).name); },
-      py::arg("method"),
+      "tableau", &tableau_of, py::arg("method"),
       "The coefficients c, a, b, e, d of a method, the functions of its dense output (function,\n"
       "stage) and the basis of these (function, power). Each number is a triple (numerator,\n"
       "denominator, root of 6): (numerator + root sqrt(6)) / denominator. An implicit method has\n"

@@ -45,7 +45,6 @@ void take_option(std::string_view name, py::handle value, std::size_t n, Value& 
   }
 }
 
-/// The value of one of the options, for Python.
 template <class Value>
 py::object given(const Options& options, const Value& value) {
   if constexpr (std::same_as<Value, std::vector<Event>>) {

@@ -16,10 +16,6 @@
 namespace pendcore::bindings {
 namespace {
 
-py::ssize_t size(const std::vector<double>& numbers) {
-  return static_cast<py::ssize_t>(numbers.size());
-}
-
 /// Every event that was asked for, as (kind, values).
 py::tuple event_pairs(const Run& run) {
   py::list pairs;
@@ -103,7 +99,7 @@ py::array columns(const py::array& rows, int begin, int end) {
 
 py::array rows(const py::object& self) {
   const Solution& s = self.cast<const Run&>().solution;
-  return view(s.states, {size(s.t), s.dimension}, self);
+  return view(s.states, shape(s.t.size(), s.dimension), self);
 }
 
 /// The entries of the ledger in rows of a solution's dimension.
@@ -144,8 +140,7 @@ py::tuple defect_of_steps(const Run& run, std::size_t first, std::size_t end, co
     throw py::value_error("defect: there are no such steps, or no such angles");
   }
   const Defect found = defect(scene_of(run), s, first, end, q);
-  const auto steps = static_cast<py::ssize_t>(end - first);
-  return py::make_tuple(copy(found.torque, {steps, s.n}), copy(found.apart), copy(q));
+  return py::make_tuple(copy(found.torque, shape(end - first, s.n)), copy(found.apart), copy(q));
 }
 
 }  // namespace
@@ -159,7 +154,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly("t",
                              [](py::object self) {
                                const Solution& s = self.cast<const Run&>().solution;
-                               return view(s.t, {size(s.t)}, self);
+                               return view(s.t, shape(s.t.size()), self);
                              })
       .def_property_readonly("states",
                              [](const py::object& self) {
@@ -200,7 +195,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly("step_starts",
                              [](py::object self) {
                                const Solution& s = self.cast<const Run&>().solution;
-                               return view(s.dense.start, {size(s.dense.start)}, self);
+                               return view(s.dense.start, shape(s.dense.start.size()), self);
                              })
       .def_property_readonly("dense_degree",
                              [](const Run& run) { return run.solution.dense.degree; })

@@ -128,12 +128,12 @@ Input input_of(py::handle named) {
   return {.kind = Input::Kind::parameter, .parameter = name};
 }
 
-/// A matrix or a vector as an array of that shape.
-template <class Found>
-Array array_from(const Found& found, const std::vector<py::ssize_t>& shape) {
-  Array array(shape);
-  std::copy_n(found.data(), found.size(), array.mutable_data());
-  return array;
+py::array array_from(const Vector& found) {
+  return copy({found.data(), static_cast<std::size_t>(found.size())});
+}
+py::array array_from(const Matrix& found) {
+  const auto size = static_cast<std::size_t>(found.size());
+  return copy({found.data(), size}, shape(found.rows(), found.cols()));
 }
 
 /// The state, its rate, A and B. Returns nothing if t is not a finite number, q not n finite
@@ -169,17 +169,15 @@ std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle 
     }
     found = Equations(driven).linearize(time, angles, rates, given);
   }
-  const auto rows = static_cast<py::ssize_t>(2 * n);
-  const auto columns = static_cast<py::ssize_t>(given.size());
-  return py::make_tuple(array_from(state, {rows}), array_from(found.drift, {rows}),
-                        array_from(found.A, {rows, rows}), array_from(found.B, {rows, columns}));
+  return py::make_tuple(array_from(state), array_from(found.drift), array_from(found.A),
+                        array_from(found.B));
 }
 
-Array matrix_exponential(const Array& given) {
+py::array matrix_exponential(const Array& given) {
   const FloatingPointEnvironment ieee;
   const py::ssize_t n = given.shape(0);
   const Matrix exponential = Eigen::Map<const Matrix>(given.data(), n, n).exp();
-  return array_from(exponential, {n, n});
+  return array_from(exponential);
 }
 
 }  // namespace
@@ -215,8 +213,7 @@ void bind_scene(py::module_& module) {
               }
               given.push_back(input.joint);
             }
-            const Vector torques = Equations(scene).trim(t, q, given);
-            return array_from(torques, {torques.size()});
+            return array_from(Equations(scene).trim(t, q, given));
           },
           py::arg("t"), py::arg("q"), py::arg("joints"))
       .def(

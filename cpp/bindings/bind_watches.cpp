@@ -22,13 +22,6 @@ DefectCorrection with_neighbours(const py::list& neighbours) {
   return correction;
 }
 
-py::array errors_of(const DefectCorrection& correction) {
-  const auto times = static_cast<py::ssize_t>(correction.t().size());
-  const auto neighbours = static_cast<py::ssize_t>(correction.neighbours());
-  const auto links = static_cast<py::ssize_t>(correction.links());
-  return copy(correction.errors(), {times, neighbours, links});
-}
-
 }  // namespace
 
 void bind_watches(py::module_& module) {
@@ -38,29 +31,27 @@ void bind_watches(py::module_& module) {
            py::arg("names"))
       .def_property_readonly("refusal", &Sensitivities::refusal)
       .def_property_readonly("values", [](const Sensitivities& found) {
-        const auto states = static_cast<py::ssize_t>(found.states());
-        const auto names = static_cast<py::ssize_t>(found.names());
-        const auto numbers = static_cast<py::ssize_t>(found.values().size());
-        const auto times = names == 0 ? 0 : numbers / (states * names);
-        return copy(found.values(), {times, states, names});
+        const std::size_t row = found.states() * found.names();
+        const std::size_t times = row == 0 ? 0 : found.values().size() / row;
+        return copy(found.values(), shape(times, found.states(), found.names()));
       });
   py::class_<DefectCorrection, KeepingWatch>(module, "DefectCorrection")
       .def(py::init(&with_neighbours), py::arg("neighbours"))
-      .def_property_readonly(
-          "t", [](const DefectCorrection& correction) { return copy(correction.t()); })
-      .def_property_readonly("errors", &errors_of)
+      .def_property_readonly("t", [](const DefectCorrection& one) { return copy(one.t()); })
+      .def_property_readonly("errors",
+                             [](const DefectCorrection& one) {
+                               return copy(one.errors(),
+                                           shape(one.t().size(), one.neighbours(), one.links()));
+                             })
       .def_property_readonly("errors_at_end",
-                             [](const DefectCorrection& correction) {
-                               const auto links = static_cast<py::ssize_t>(correction.links());
-                               const auto neighbours =
-                                   static_cast<py::ssize_t>(correction.neighbours());
-                               return copy(correction.errors_at_end(), {neighbours, 1, links});
+                             [](const DefectCorrection& one) {
+                               return copy(one.errors_at_end(),
+                                           shape(one.neighbours(), 1, one.links()));
                              })
       .def_property_readonly("agreement",
-                             [](const DefectCorrection& correction) {
-                               const Agreement& found = correction.agreement();
-                               return py::make_tuple(found.between, found.largest, found.at_loss,
-                                                     found.t_known);
+                             [](const DefectCorrection& one) {
+                               const auto& [between, largest, at_loss, t_known] = one.agreement();
+                               return py::make_tuple(between, largest, at_loss, t_known);
                              })
       .def_property_readonly("nfev", &DefectCorrection::nfev);
   module.def("has_defect_correction", &has_defect_correction, py::arg("scene"));

@@ -112,9 +112,9 @@ void visit(Archive& io, AnySolution& s) {
   io("start", s.start);
   io("t_reached", s.t_reached);
   io("y_reached", s.y_reached);
-  io("resumable_t", s.resumable_t);
-  io("resumable_steps", s.resumable_steps);
-  io("resumable_found", s.resumable_found);
+  io("resumable_t", s.resumable_kept.t);
+  io("resumable_steps", s.resumable_kept.steps);
+  io("resumable_found", s.resumable_kept.found);
 }
 
 /// Every field of the position from which a solution can be resumed.
@@ -145,7 +145,7 @@ bool arrays_fit(const Solution& s) {
   const std::size_t steps = s.dense.h.size();
   return s.states.size() == s.t.size() * n && s.start.size() == n && s.y_reached.size() == n &&
          s.resumable->y.size() == n && s.resumable->dydt.size() == n &&
-         s.resumable_t <= s.t.size() && s.resumable_steps <= steps &&
+         s.resumable_kept.t <= s.t.size() && s.resumable_kept.steps <= steps &&
          s.dense.start.size() == steps && s.dense.start_low.size() == steps &&
          s.dense.degree >= 0 && s.dense.degree <= 64 &&
          s.dense.coefficients.size() == steps * (static_cast<std::size_t>(s.dense.degree) + 1) * n;
@@ -228,7 +228,6 @@ std::string json_of_events(const std::vector<Event>& events) {
   return json_of(pairs);
 }
 
-/// The events that were found, as columns.
 struct FoundColumns {
   std::vector<double> event{}, t{}, direction{}, y{};
   std::vector<double> y_before{};  ///< NaN where the state does not jump
@@ -262,7 +261,7 @@ std::vector<FoundEvent> found_events(const FoundColumns& columns, const Solution
   const std::size_t count = event.size();
   const std::size_t n = 2 * static_cast<std::size_t>(solution.n);
   bool fits = t.size() == count && direction.size() == count && y.size() == count * n &&
-              y_before.size() == count * n && solution.resumable_found <= count;
+              y_before.size() == count * n && solution.resumable_kept.found <= count;
   std::vector<FoundEvent> found;
   for (std::size_t i = 0; fits && i < count; ++i) {
     fits = event[i] >= 0.0 && event[i] < static_cast<double>(solution.options.events.size()) &&

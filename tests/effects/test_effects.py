@@ -121,7 +121,7 @@ VALUES = {
     "Table([0, 1, 1], [0, 1, 2])": r"t\[2\] = 1.0: must .* between",
     "Spline([0, 1, 1], [0, 0, 0], [0, 0, 0])": r"t\[2\] = 1.0: must be above",
     "Spline([0], [0], [0])": r"t: has 1 time",
-    "Spline([0, 1], [0, 1], [0])": r"y: has 1 value.*must have 2, one for each time",
+    "Spline([0, 1], [0, 1], [0])": r"y: has 1 number.*must have 2, one for each time",
     "Sinusoid(inf, 1)": r"amplitude = inf: must be finite \(N m or m\)",
     "User(print, breaks=[1, 1])": r"breaks\[1\] = 1.0: must be above the time before, 1.0 \(s\)$",
     "User(print, breaks=[inf])": r"breaks\[0\] = inf: must be finite \(s\)$",

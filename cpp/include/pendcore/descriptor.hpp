@@ -10,7 +10,6 @@
 #include <cmath>
 #include <concepts>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -30,18 +29,12 @@ enum class Range {
   count
 };
 
+inline constexpr auto range_texts = std::to_array<std::string_view>(
+    {"finite", "finite and >= 0", "finite and > 0", "finite and >= 1", "> 0, inf for no limit",
+     "0 to 1", "a number; -inf or inf for none", "a whole number, 1 or more"});
+
 constexpr std::string_view text(Range range) {
-  switch (range) {
-    case Range::any: return "finite";
-    case Range::not_negative: return "finite and >= 0";
-    case Range::positive: return "finite and > 0";
-    case Range::at_least_one: return "finite and >= 1";
-    case Range::positive_or_infinite: return "> 0, inf for no limit";
-    case Range::share: return "0 to 1";
-    case Range::number: return "a number; -inf or inf for none";
-    case Range::count: return "a whole number, 1 or more";
-  }
-  return "";
+  return range_texts[static_cast<std::size_t>(range)];
 }
 
 inline bool holds(Range range, double x) {

@@ -57,9 +57,6 @@ struct TangentGrowth {
   std::exception_ptr error;    ///< what a user's function threw, if it ended the run
 };
 
-/// The number of exponents of a scene: twice its degrees of freedom.
-int lyapunov_count(const Scene& scene);
-
 /// Throws std::invalid_argument for effects that make the motion or the law of motion jump (dry
 /// friction and stops): the variational equations do not hold there.
 void check_has_exponents(const Scene& scene);

@@ -71,9 +71,11 @@ struct Solution {
 
   /// Where a resumed run continues: before the first step that the end of this run cut short.
   std::shared_ptr<const IntegratorState> resumable;
-  std::size_t resumable_t = 0;      ///< so many of `t` are also in a run that never stopped,
-  std::size_t resumable_steps = 0;  ///< and so many polynomials
-  std::size_t resumable_found = 0;  ///< and so many events
+  /// What a run that never stopped has kept up to there, too.
+  struct Kept {
+    std::size_t t = 0, steps = 0, found = 0;  ///< so many of `t`, of the polynomials, of the events
+  };
+  Kept resumable_kept;
 
   /// The states kept, in their order: i = 0 .. t.size() - 1. solution.back().q(1) is the second
   /// angle at the last of them. Throws std::out_of_range where none is kept.

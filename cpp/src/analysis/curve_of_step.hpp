@@ -15,18 +15,6 @@ namespace pendcore {
 /// How many numbers the n links take in memory, so that packs of them fit.
 inline std::size_t padded(std::size_t n) { return n <= 2 ? n : (n + 3) / 4 * 4; }
 
-/// Calls a kernel with the kind of pack that fits n links.
-template <class Kernel>
-PENDCORE_INLINE void with_pack_for(std::size_t n, const Kernel& kernel) {
-  if (n == 1) {
-    kernel.template operator()<double>();
-  } else if (n == 2) {
-    kernel.template operator()<Pair>();
-  } else {
-    kernel.template operator()<Pack<4>>();
-  }
-}
-
 /// In powers of theta. Angles and rates take padded(n) numbers each; those beyond the links have no
 /// meaning, and nothing reads them.
 struct CurveOfStep {
@@ -54,7 +42,7 @@ PENDCORE_INLINE Row load_links(const double* from, std::size_t k, std::size_t n)
 /// each power, which begins with angles and rates. The vectors of the curve have the right size.
 PENDCORE_INLINE void set_curve(const double* rows, std::size_t stride, double h,
                                CurveOfStep* curve) {
-  with_pack_for(curve->n, [=]<class Row>() __attribute__((always_inline)) {
+  with_row_for(curve->n, [=]<class Row>() __attribute__((always_inline)) {
     const std::size_t n = curve->n;
     const std::size_t width = curve->width;
     for (std::size_t k = 0; k < width; k += Lanes<Row>::width) {
@@ -130,7 +118,7 @@ PENDCORE_INLINE void evaluate_curve(const CurveOfStep& curve,
 /// at the start comes last, so that little is rounded.
 PENDCORE_INLINE void offset_from_state(const CurveOfStep& curve, double theta, const double* y,
                                        double* offset) {
-  with_pack_for(curve.n, [&, theta, y, offset]<class Row>() __attribute__((always_inline)) {
+  with_row_for(curve.n, [&, theta, y, offset]<class Row>() __attribute__((always_inline)) {
     const std::size_t width = curve.width;
     const Row at = broadcast<Row>(theta);
     for (std::size_t k = 0; k < width; k += Lanes<Row>::width) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "analysis/defect_correction_kernels.hpp"
@@ -36,8 +35,7 @@ struct DefectCorrection::Neighbour {
       : equations(std::move(of_scene)),
         qdd_of(right_hand_side(*equations)),
         points(its_points),
-        begin_step(defect_kernels().begin_step(its_points.count)),
-        advance_to_point(defect_kernels().advance_to_point),
+        begin_step(begin_step_with(its_points.count)),
         n(scene.links.size()),
         q0(std::move(angles)),
         state(n, points.count),
@@ -72,7 +70,7 @@ struct DefectCorrection::Neighbour {
 
   /// Goes on to point i and evaluates the right-hand side there, or to the end.
   void advance(const Step& step, std::size_t i) {
-    advance_to_point(points, i, step.h, state);
+    on_this_processor<&advance_to_point>(points, i, step.h, state);
     if (i < points.count) evaluate(step.t_start + points.theta[i] * step.h);
   }
 
@@ -88,8 +86,7 @@ struct DefectCorrection::Neighbour {
   std::shared_ptr<const EquationsOfMotion> equations;
   RightHandSide qdd_of;
   const LobattoPoints& points;
-  DefectKernels::BeginStep begin_step;
-  decltype(DefectKernels::advance_to_point) advance_to_point;
+  decltype(begin_step_with(0)) begin_step;
   std::size_t n;
   std::vector<double> q0;
   std::vector<double> shares{};  ///< of the links in the total length
@@ -175,7 +172,7 @@ void DefectCorrection::take_curve(const WatchedStep& step) {
   const std::size_t size = (curve.degree + 1) * curve.width;
   curve.powers.resize(2 * size);
   curve.angle_offset.resize(size);
-  defect_kernels().set_curve(step.rows, step.y.size(), step.h, &curve);
+  on_this_processor<&set_curve>(step.rows, step.y.size(), step.h, &curve);
 }
 
 /// The neighbours go on side by side, so that a processor works on several of them at once.
@@ -190,8 +187,8 @@ void DefectCorrection::go_on(const Step& step) {
 
 void DefectCorrection::end_step(const WatchedStep& step) {
   Scratch& scratch = *scratch_;
-  defect_kernels().offset_from_state(scratch.curve, step.share, step.y.data(),
-                                     scratch.offset.data());
+  on_this_processor<&offset_from_state>(scratch.curve, step.share, step.y.data(),
+                                        scratch.offset.data());
   for (const auto& one : neighbours_) one->end_step(scratch.offset);
 }
 
@@ -215,9 +212,6 @@ void DefectCorrection::compare() {
   agreement_.largest = std::max(agreement_.largest, largest);
   agreement_.t_known = t_start_;
 }
-
-/// A scene whose laws do not change has no impacts: its state is only settled.
-void DefectCorrection::jumps(double, std::span<const double>) {}
 
 void DefectCorrection::keep_errors(const Step& step) {
   std::vector<double>& theta = scratch_->theta;
@@ -255,11 +249,11 @@ void DefectCorrection::keep_errors_within(const Step& step, const double* t) {
   if (agreement_.is_lost()) return;
   scratch.polynomials.clear();
   for (const auto& one : neighbours_) {
-    defect_kernels().error_polynomials(one->points, step.h, one->state, one->polynomials.data());
+    on_this_processor<&error_polynomials>(one->points, step.h, one->state, one->polynomials.data());
     scratch.polynomials.push_back(one->polynomials.data());
   }
-  defect_kernels().errors_within(
-      {&scratch.curve, step.size, scratch.polynomials, scratch.theta, errors});
+  on_this_processor<&errors_within>(
+      ErrorsWithin{&scratch.curve, step.size, scratch.polynomials, scratch.theta, errors});
 }
 
 void DefectCorrection::keep_errors_now(double t) {

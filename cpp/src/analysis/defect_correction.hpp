@@ -79,7 +79,8 @@ class DefectCorrection final : public KeepingWatch {
   bool asks_for_dense_output() const override { return true; }
   void starts(double t, std::span<const double> y) override;
   void steps(const WatchedStep& step) override;
-  void jumps(double t, std::span<const double> y) override;
+  /// A scene whose laws do not change has no impacts: its state is only settled.
+  void jumps(double /*t*/, std::span<const double> /*y*/) override {}
 
   const std::vector<double>& t() const { return t_; }  ///< s, (n_t)
   /// The errors of the angles, (n_t, neighbours, n) row-major, rad. NaN where the run is lost.

@@ -47,7 +47,7 @@ PENDCORE_INLINE void begin_step(const LobattoPoints& points, const CurveOfStep& 
 /// errors at the end, if i is the number of points.
 PENDCORE_INLINE void advance_to_point(const LobattoPoints& points, std::size_t i, double h,
                                       CorrectionState& state) {
-  with_pack_for(state.n, [&, i, h]<class Row>() __attribute__((always_inline)) {
+  with_row_for(state.n, [&, i, h]<class Row>() __attribute__((always_inline)) {
     const std::size_t width = state.width;
     const LobattoPoints::Sums& to = points.sums[i];
     for (std::size_t k = 0; k < width; k += Lanes<Row>::width) {
@@ -139,32 +139,12 @@ PENDCORE_INLINE void errors_within(const ErrorsWithin& wanted) {
   }
 }
 
-/// All of them for this processor.
-struct DefectKernels {
-  using BeginStep = void (*)(const LobattoPoints&, const CurveOfStep&, double, double,
-                             CorrectionState&);
-
-  decltype(fastest<&pendcore::set_curve>()) set_curve = fastest<&pendcore::set_curve>();
-  std::array<BeginStep, 5> begin_step_of = {
-      fastest<&pendcore::begin_step<5>>(), fastest<&pendcore::begin_step<6>>(),
-      fastest<&pendcore::begin_step<7>>(), fastest<&pendcore::begin_step<8>>(),
-      fastest<&pendcore::begin_step<9>>()};  ///< for so many points
-  decltype(fastest<&pendcore::advance_to_point>()) advance_to_point =
-      fastest<&pendcore::advance_to_point>();
-  decltype(fastest<&pendcore::offset_from_state>()) offset_from_state =
-      fastest<&pendcore::offset_from_state>();
-  decltype(fastest<&pendcore::error_polynomials>()) error_polynomials =
-      fastest<&pendcore::error_polynomials>();
-  decltype(fastest<&pendcore::errors_within>()) errors_within = fastest<&pendcore::errors_within>();
-
-  BeginStep begin_step(std::size_t points) const {
-    return begin_step_of.at(points - LobattoPoints::least);
-  }
-};
-
-inline const DefectKernels& defect_kernels() {
-  static const DefectKernels all;
-  return all;
+/// The beginning of a step with so many points, on this processor.
+inline auto begin_step_with(std::size_t points) {
+  const std::array all = {fastest<&begin_step<5>>(), fastest<&begin_step<6>>(),
+                          fastest<&begin_step<7>>(), fastest<&begin_step<8>>(),
+                          fastest<&begin_step<9>>()};
+  return all.at(points - LobattoPoints::least);
 }
 
 }  // namespace pendcore

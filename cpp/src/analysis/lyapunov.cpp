@@ -206,23 +206,6 @@ Options options_of_run(const LyapunovOptions& options) {
   return run;
 }
 
-}  // namespace
-
-void check_has_exponents(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
-    if (!scene.effects[i].info().jumps_or_sticks) continue;
-    throw std::invalid_argument(
-        effect_name(scene, i) +
-        ": motions jump or stick under it, each at a time of its own, so neighbouring motions do "
-        "not diverge at a rate: remove dry friction and stops to get exponents; sol.valid_until() "
-        "and pendcore.horizon_work tell how long a run is right with them, too");
-  }
-}
-
-int lyapunov_count(const Scene& scene) { return static_cast<int>(tangent_basis(scene).rows()); }
-
-namespace {
-
 std::vector<double> times_of_growth(const LyapunovOptions& options, double t0, double t_end) {
   const double since = options.since.value_or(t0);
   std::vector<double> times = options.t_eval;
@@ -236,6 +219,17 @@ std::vector<double> times_of_growth(const LyapunovOptions& options, double t0, d
 }
 
 }  // namespace
+
+void check_has_exponents(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    if (!scene.effects[i].info().jumps_or_sticks) continue;
+    throw std::invalid_argument(
+        effect_name(scene, i) +
+        ": motions jump or stick under it, each at a time of its own, so neighbouring motions do "
+        "not diverge at a rate: remove dry friction and stops to get exponents; sol.valid_until() "
+        "and pendcore.horizon_work tell how long a run is right with them, too");
+  }
+}
 
 TangentGrowth lyapunov(const Scene& scene, const Numbers& q0, const Numbers& qd0, double t0,
                        double t_end, const LyapunovOptions& options) {

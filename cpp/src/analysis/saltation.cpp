@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "arithmetic/epsilon.hpp"
 #include "arithmetic/extrapolated_slope.hpp"
 #include "dynamics/contact/impact_laws.hpp"
 #include "dynamics/kinematics.hpp"
 #include "pendcore/parameters.hpp"
-#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {
@@ -98,11 +96,12 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   f_after.head(n_) = View(change.after.data() + n_, n_);
   accelerations_in_force(change.equations, change.t, change.after.data(), change.after.data() + n_,
                          f_after.data() + n_);
-  const double natural = equations_.equations().held_joints->natural_speed();
+  const HeldJoints& joints = *equations_.equations().held_joints;
+  const double natural = joints.natural_speed();
   const double size = std::max({largest(f), largest(f_after), natural * natural});
   const bool is_continuous = !change.jumped && largest(f_after - f) <= rounding_of_rates * size;
-  const double moment = 64.0 * epsilon * std::max(std::abs(change.t), 1.0 / natural);
-  const bool is_again = std::abs(change.t - last_) <= moment && !follows_the_last(change);
+  const bool is_again =
+      std::abs(change.t - last_) <= joints.shortest_moment(change.t) && !follows_the_last(change);
   if (change.guard == nullptr) {
     if (is_again && !was_given_ && !is_continuous) return "two of its laws change at that time";
     last_ = change.t;

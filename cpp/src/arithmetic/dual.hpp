@@ -145,26 +145,15 @@ PENDCORE_INLINE void store(Dual<double>* to, const Dual<Row>& x) {
   for (int i = 0; i < Lanes<Row>::width; ++i) to[i] = {lane(x.value, i), lane(x.slope, i)};
 }
 
-template <class Row, class Along>
-PENDCORE_INLINE Dual<Row, Along> other(const Dual<Row, Along>& x) {
-  return {other(x.value), other(x.slope)};
-}
-template <class Row, class Along>
-PENDCORE_INLINE Dual<Row, Along> before(const Dual<Row, Along>& x) {
-  return {before(x.value), before(x.slope)};
-}
-template <class Row, class Along>
-PENDCORE_INLINE Dual<Row, Along> after(const Dual<Row, Along>& x) {
-  return {after(x.value), after(x.slope)};
-}
-template <class Row>
-PENDCORE_INLINE Dual<Row> before(const Dual<Row>& x, const Dual<Row>& row_before) {
-  return {before(x.value, row_before.value), before(x.slope, row_before.slope)};
-}
-template <class Row>
-PENDCORE_INLINE Dual<Row> after(const Dual<Row>& x, const Dual<Row>& row_after) {
-  return {after(x.value, row_after.value), after(x.slope, row_after.slope)};
-}
+/// A function that only moves numbers, or adds some to others, does so with values and slopes.
+#define PENDCORE_LINEAR_FUNCTION(function)                        \
+  template <class... Rows, class... Alongs>                       \
+  PENDCORE_INLINE auto function(const Dual<Rows, Alongs>&... x) { \
+    return Dual(function(x.value...), function(x.slope...));      \
+  }
+PENDCORE_LINEAR_FUNCTION(other)
+PENDCORE_LINEAR_FUNCTION(before)
+PENDCORE_LINEAR_FUNCTION(after)
 
 template <class Row, class Along>
 PENDCORE_INLINE Dual<Row, Along> absolute(const Dual<Row, Along>& x) {

@@ -17,29 +17,12 @@ struct RowOfLinks<Dual<double>, links> {
 };
 }  // namespace row_detail
 
-template <class Low>
-using Joined = decltype(joined(std::declval<Low>(), std::declval<Low>()));
-
-template <class Along>
-PENDCORE_INLINE Dual<Pairs, Joined<Along>> joined(const Dual<Pair, Along>& low,
-                                                  const Dual<Pair, Along>& high) {
-  return {joined(low.value, high.value), joined(low.slope, high.slope)};
-}
-template <class Along>
-PENDCORE_INLINE auto low_half(const Dual<Pairs, Along>& x) {
-  return Dual<Pair, decltype(low_half(x.slope))>(low_half(x.value), low_half(x.slope));
-}
-template <class Along>
-PENDCORE_INLINE auto high_half(const Dual<Pairs, Along>& x) {
-  return Dual<Pair, decltype(high_half(x.slope))>(high_half(x.value), high_half(x.slope));
-}
-PENDCORE_INLINE Dual<Pairs> twice(const Dual<Pair>& x) { return {twice(x.value), twice(x.slope)}; }
-PENDCORE_INLINE Dual<Pairs> halves_added(const Dual<Pairs>& x) {
-  return {halves_added(x.value), halves_added(x.slope)};
-}
-PENDCORE_INLINE Dual<Pairs> turned(const Dual<Pairs>& x) {
-  return {turned(x.value), turned(x.slope)};
-}
+PENDCORE_LINEAR_FUNCTION(joined)
+PENDCORE_LINEAR_FUNCTION(low_half)
+PENDCORE_LINEAR_FUNCTION(high_half)
+PENDCORE_LINEAR_FUNCTION(twice)
+PENDCORE_LINEAR_FUNCTION(halves_added)
+PENDCORE_LINEAR_FUNCTION(turned)
 
 // A pair with slopes along several directions: the values are one pack, and the slopes of each
 // number another one.

@@ -69,13 +69,13 @@ PENDCORE_INLINE Real power(const Real& x, double p) {
   return result;
 }
 
-template <class Real>
-PENDCORE_INLINE Two<Real> exponential(const Two<Real>& x) {
-  return {exponential(x.first), exponential(x.second)};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row exponential(const Row& x) {
+  return Row::each([](const auto& a) __attribute__((always_inline)) { return exponential(a); }, x);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> power(const Two<Real>& x, double p) {
-  return {power(x.first, p), power(x.second, p)};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row power(const Row& x, double p) {
+  return Row::each([p](const auto& a) __attribute__((always_inline)) { return power(a, p); }, x);
 }
 
 }  // namespace pendcore

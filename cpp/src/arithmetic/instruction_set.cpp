@@ -1,6 +1,7 @@
 #include "arithmetic/instruction_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
@@ -44,12 +45,8 @@ InstructionSet instruction_set() {
 }
 
 const char* name(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::x86_64_v4: return "x86-64-v4";
-    case InstructionSet::x86_64_v3: return "x86-64-v3";
-    case InstructionSet::baseline: break;
-  }
-  return "baseline";
+  static constexpr std::array names = {"baseline", "x86-64-v3", "x86-64-v4"};
+  return names[static_cast<std::size_t>(set)];
 }
 
 }  // namespace pendcore

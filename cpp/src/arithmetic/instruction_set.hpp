@@ -96,6 +96,13 @@ typename Clones<kernel>::Function fastest() {
 #endif
 }
 
+/// Calls that clone.
+template <auto kernel, Sets sets = usual_sets, class... Arguments>
+auto on_this_processor(Arguments&&... arguments) {
+  static const auto clone = fastest<kernel, sets>();
+  return clone(static_cast<Arguments&&>(arguments)...);
+}
+
 /// The clone of `kernel` for one instruction set, if each set has a kernel of its own. A build
 /// without clones has the one that it is for.
 template <auto kernel, InstructionSet set>

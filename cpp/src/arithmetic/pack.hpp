@@ -58,6 +58,11 @@ struct Vector<8> {
   typedef double Reals __attribute__((vector_size(64)));
   typedef long long Integers __attribute__((vector_size(64)));
 };
+template <int pack_width>
+struct LanesOf : Vector<pack_width> {
+  static constexpr int width = pack_width;
+  using Number = double;
+};
 }  // namespace pack_detail
 
 template <int width>
@@ -69,20 +74,11 @@ using Condition =
     std::conditional_t<std::is_same_v<Real, double>, bool, typename Lanes<Real>::Integers>;
 
 template <>
-struct Lanes<Pack<2>> : pack_detail::Vector<2> {
-  static constexpr int width = 2;
-  using Number = double;
-};
+struct Lanes<Pack<2>> : pack_detail::LanesOf<2> {};
 template <>
-struct Lanes<Pack<4>> : pack_detail::Vector<4> {
-  static constexpr int width = 4;
-  using Number = double;
-};
+struct Lanes<Pack<4>> : pack_detail::LanesOf<4> {};
 template <>
-struct Lanes<Pack<8>> : pack_detail::Vector<8> {
-  static constexpr int width = 8;
-  using Number = double;
-};
+struct Lanes<Pack<8>> : pack_detail::LanesOf<8> {};
 
 /// The same number in every lane.
 template <class Real>

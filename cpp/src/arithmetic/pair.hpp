@@ -8,6 +8,8 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
+#include <cstddef>
 
 #include "arithmetic/pack.hpp"
 #include "arithmetic/sine_cosine.hpp"
@@ -16,11 +18,28 @@ namespace pendcore {
 
 template <class Real>
 struct Two {
+  using Number = Real;
+  static constexpr bool is_row = true;
+
   Real first;
   Real second;
+
+  /// The row of f(x, ...) of the numbers of rows.
+  template <class Function, class... Rows>
+  PENDCORE_INLINE static Two each(const Function& f, const Rows&... rows) {
+    return {f(rows.first...), f(rows.second...)};
+  }
 };
 
 using Pair = Pack<2>;
+
+/// Calls use<Row>() with the kind of row that n links, or as many numbers, are taken in.
+template <class Use>
+PENDCORE_INLINE auto with_row_for(std::size_t n, const Use& use) {
+  if (n == 1) return use.template operator()<double>();
+  if (n == 2) return use.template operator()<Pair>();
+  return use.template operator()<Pack<4>>();
+}
 
 namespace pair_detail {
 template <class Number>
@@ -72,7 +91,6 @@ PENDCORE_INLINE Pairs twice(const Pair& x) { return joined(x, x); }
 PENDCORE_INLINE Pairs halves_swapped(const Pairs& x) {
   return __builtin_shufflevector(x, x, 2, 3, 0, 1);
 }
-/// x + y in both halves.
 PENDCORE_INLINE Pairs halves_added(const Pairs& x) { return x + halves_swapped(x); }
 /// (-y, x): vectors in the plane, turned by a right angle.
 PENDCORE_INLINE Pairs turned(const Pairs& x) {
@@ -122,71 +140,76 @@ PENDCORE_INLINE Two<Real> after(const Two<Real>& x) {
   return {x.second, broadcast<Real>(0.0)};
 }
 
-template <class Real>
-PENDCORE_INLINE Two<Real> operator-(const Two<Real>& x) {
-  return {-x.first, -x.second};
+/// Numbers of several links that are no pack: Two, and EachLink (row_of_links.hpp). Sums, products
+/// and functions of rows are those of their numbers.
+template <class Row>
+concept RowOfNumbers = Row::is_row;
+/// One number of each trajectory, or of all.
+template <class Number, class Row>
+concept FactorOf = std::same_as<Number, double> || std::same_as<Number, typename Row::Number>;
+
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator-(const Row& x) {
+  return Row::each([](const auto& a) __attribute__((always_inline)) { return -a; }, x);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator+(const Two<Real>& x, const Two<Real>& y) {
-  return {x.first + y.first, x.second + y.second};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator+(const Row& x, const Row& y) {
+  return Row::each(
+      [](const auto& a, const auto& b) __attribute__((always_inline)) { return a + b; }, x, y);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator-(const Two<Real>& x, const Two<Real>& y) {
-  return {x.first - y.first, x.second - y.second};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator-(const Row& x, const Row& y) {
+  return Row::each(
+      [](const auto& a, const auto& b) __attribute__((always_inline)) { return a - b; }, x, y);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, const Two<Real>& y) {
-  return {x.first * y.first, x.second * y.second};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator*(const Row& x, const Row& y) {
+  return Row::each(
+      [](const auto& a, const auto& b) __attribute__((always_inline)) { return a * b; }, x, y);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator*(const Two<Real>& x, double y) {
-  return {x.first * y, x.second * y};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator/(const Row& x, const Row& y) {
+  return Row::each(
+      [](const auto& a, const auto& b) __attribute__((always_inline)) { return a / b; }, x, y);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator/(const Two<Real>& x, const Two<Real>& y) {
-  return {x.first / y.first, x.second / y.second};
+template <RowOfNumbers Row, FactorOf<Row> Factor>
+PENDCORE_INLINE Row operator*(const Factor& x, const Row& y) {
+  return Row::each([&](const auto& a) __attribute__((always_inline)) { return x * a; }, y);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> operator/(double x, const Two<Real>& y) {
-  return {x / y.first, x / y.second};
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row operator*(const Row& x, double y) {
+  return Row::each([y](const auto& a) __attribute__((always_inline)) { return a * y; }, x);
 }
-template <class Real>
-PENDCORE_INLINE Two<Real> fma(const Two<Real>& a, const Two<Real>& b, const Two<Real>& c) {
-  return {fma(a.first, b.first, c.first), fma(a.second, b.second, c.second)};
+template <RowOfNumbers Row, FactorOf<Row> Factor>
+PENDCORE_INLINE Row operator/(const Factor& x, const Row& y) {
+  return Row::each([&](const auto& a) __attribute__((always_inline)) { return x / a; }, y);
+}
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row fma(const Row& a, const Row& b, const Row& c) {
+  return Row::each([](const auto& x, const auto& y, const auto& z)
+                       __attribute__((always_inline)) { return fma(x, y, z); },
+                   a, b, c);
+}
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row fma(const typename Row::Number& a, const Row& b, const Row& c) {
+  return Row::each([&](const auto& y, const auto& z)
+                       __attribute__((always_inline)) { return fma(a, y, z); },
+                   b, c);
+}
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row absolute(const Row& x) {
+  return Row::each([](const auto& a) __attribute__((always_inline)) { return absolute(a); }, x);
+}
+template <RowOfNumbers Row>
+PENDCORE_INLINE Row larger(const Row& x, const Row& y) {
+  return Row::each([](const auto& a, const auto& b)
+                       __attribute__((always_inline)) { return larger(a, b); },
+                   x, y);
 }
 template <class Real>
 PENDCORE_INLINE void sine_cosine(const Two<Real>& x, Two<Real>& sine, Two<Real>& cosine) {
   sine_cosine(x.first, sine.first, cosine.first);
   sine_cosine(x.second, sine.second, cosine.second);
-}
-
-template <class Real>
-PENDCORE_INLINE Two<Real> absolute(const Two<Real>& x) {
-  return {absolute(x.first), absolute(x.second)};
-}
-template <class Real>
-PENDCORE_INLINE Two<Real> larger(const Two<Real>& a, const Two<Real>& b) {
-  return {larger(a.first, b.first), larger(a.second, b.second)};
-}
-
-/// A number of each trajectory times, or divided by, both numbers of a pair.
-template <class Real>
-PENDCORE_INLINE Two<Real> fma(const Real& a, const Two<Real>& b, const Two<Real>& c) {
-  return {fma(a, b.first, c.first), fma(a, b.second, c.second)};
-}
-template <class Real>
-  requires(Lanes<Real>::width > 1)
-PENDCORE_INLINE Two<Real> operator*(const Real& x, const Two<Real>& y) {
-  return {x * y.first, x * y.second};
-}
-template <class Real>
-PENDCORE_INLINE Two<Real> operator*(double x, const Two<Real>& y) {
-  return {x * y.first, x * y.second};
-}
-template <class Real>
-  requires(Lanes<Real>::width > 1)
-PENDCORE_INLINE Two<Real> operator/(const Real& x, const Two<Real>& y) {
-  return {x / y.first, x / y.second};
 }
 
 /// A number of each link times the slopes of that link's number.

@@ -14,7 +14,18 @@ namespace pendcore {
 /// One pack for each link.
 template <class Real, int links>
 struct EachLink {
+  using Number = Real;
+  static constexpr bool is_row = true;
+
   Real of[links];
+
+  template <class Function, class... Rows>
+  PENDCORE_INLINE static EachLink each(const Function& f, const Rows&... rows) {
+    EachLink row;
+#pragma GCC unroll 4
+    for (int i = 0; i < links; ++i) row.of[i] = f(rows.of[i]...);
+    return row;
+  }
 };
 
 namespace row_detail {
@@ -40,83 +51,9 @@ template <class Number, int links>
 using RowOfLinks = typename row_detail::RowOfLinks<Number, links>::Type;
 
 template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator-(const EachLink<Real, links>& x) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(-x.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator+(const EachLink<Real, links>& x,
-                                                const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] + y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator-(const EachLink<Real, links>& x,
-                                                const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] - y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator*(const EachLink<Real, links>& x,
-                                                const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] * y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator*(const Real& x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x * y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator*(double x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x * y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator*(const EachLink<Real, links>& x, double y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x.of[i] * y); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator/(const Real& x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x / y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> operator/(double x, const EachLink<Real, links>& y) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return Real(x / y.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> absolute(const EachLink<Real, links>& x) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return absolute(x.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> larger(const EachLink<Real, links>& a,
-                                             const EachLink<Real, links>& b) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return larger(a.of[i], b.of[i]); });
-}
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> fma(const EachLink<Real, links>& a,
-                                          const EachLink<Real, links>& b,
-                                          const EachLink<Real, links>& c) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return fma(a.of[i], b.of[i], c.of[i]); });
-}
-template <class Real, int links>
 PENDCORE_INLINE void sine_cosine(const EachLink<Real, links>& x, EachLink<Real, links>& sine,
                                  EachLink<Real, links>& cosine) {
   for (int i = 0; i < links; ++i) sine_cosine(x.of[i], sine.of[i], cosine.of[i]);
-}
-
-/// A number of each trajectory times that of each link.
-template <class Real, int links>
-PENDCORE_INLINE EachLink<Real, links> fma(const Real& a, const EachLink<Real, links>& b,
-                                          const EachLink<Real, links>& c) {
-  return row_detail::each<Real, links>(
-      [&](int i) __attribute__((always_inline)) { return fma(a, b.of[i], c.of[i]); });
 }
 
 /// The value at the joint before, and at the joint after; 0 beyond the ends of the chain.

@@ -1,7 +1,6 @@
 #include "arithmetic/sine_cosine.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -53,8 +52,7 @@ void sine_cosine_detail::replace_large(const double* x, int count, double* sine_
 }
 
 void sine_cosine(const double* x, long long m, double* sine, double* cosine) {
-  static const auto stream = fastest<&sine_cosine_stream>();
-  stream(x, m, sine, cosine);
+  on_this_processor<&sine_cosine_stream>(x, m, sine, cosine);
 }
 
 void sine_cosine_exact(double x, double& sine, double& cosine) {

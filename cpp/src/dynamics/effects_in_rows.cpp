@@ -8,6 +8,31 @@
 
 namespace pendcore {
 
+namespace {
+
+template <class Row>
+struct ForceProbe {
+  bool is_called = false;
+  void couple(const Row& /*tau*/) {}
+  void generalised(const Row& /*Q*/) {}
+  void force(const Row& /*moment*/, const Row& /*fx*/, const Row& /*fy*/) { is_called = true; }
+};
+
+template <class Row, class Law>
+bool calls_force(const Law& law) {
+  constexpr int room = 8;
+  const double zeros[3 * room]{};
+  const double* const z = zeros + room;
+  const RowInArrays<Row> at({z, z, z, z, z, z, z}, 0.0, 0);
+  ForceProbe<Row> probe;
+  law.add(at, probe);
+  return probe.is_called;
+}
+
+bool is_couple(const Effect& effect) { return effect->couple(0).has_value(); }
+
+}  // namespace
+
 EffectsOfRun::EffectsOfRun(const Scene& scene)
     : effects(scene.effects),
       modes(scene.effects.size(), 0),
@@ -84,31 +109,6 @@ void EffectsOfRun::call(const UserLaw& user, double t, const Dual<double>* q,
     Q[i].slope = (std::isfinite(ahead) ? ahead - Q[i].value : Q[i].value - forces[i]) / step;
   }
 }
-
-namespace {
-
-template <class Row>
-struct ForceProbe {
-  bool is_called = false;
-  void couple(const Row& /*tau*/) {}
-  void generalised(const Row& /*Q*/) {}
-  void force(const Row& /*moment*/, const Row& /*fx*/, const Row& /*fy*/) { is_called = true; }
-};
-
-template <class Row, class Law>
-bool calls_force(const Law& law) {
-  constexpr int room = 8;
-  const double zeros[3 * room]{};
-  const double* const z = zeros + room;
-  const RowInArrays<Row> at({z, z, z, z, z, z, z}, 0.0, 0);
-  ForceProbe<Row> probe;
-  law.add(at, probe);
-  return probe.is_called;
-}
-
-bool is_couple(const Effect& effect) { return effect->couple(0).has_value(); }
-
-}  // namespace
 
 template <class Row>
 EffectsInRows<Row>::EffectsInRows(const Scene& scene) : EffectsOfRun(scene) {
@@ -265,13 +265,5 @@ template Pair of_users(const EffectsOfRun&, double, const Pair&, const Pair&);
 template Dual<double> of_users(const EffectsOfRun&, double, const Dual<double>&,
                                const Dual<double>&);
 template Dual<Pair> of_users(const EffectsOfRun&, double, const Dual<Pair>&, const Dual<Pair>&);
-
-std::shared_ptr<EffectsOfRun> effects_of_run(const Scene& scene) {
-  switch (scene.links.size()) {
-    case 1: return std::make_shared<EffectsInRows<double>>(scene);
-    case 2: return std::make_shared<EffectsInRows<Pair>>(scene);
-    default: return std::make_shared<EffectsInRows<Pack<4>>>(scene);
-  }
-}
 
 }  // namespace pendcore

@@ -131,8 +131,7 @@ class EffectsInRows final : public EffectsOfRun {
   /// equations that rarely have entries.
   template <class At, class Loads>
   static void add_all(const EffectsInRows* effects, const At* at, Loads* loads) {
-    static const auto add_on_this_processor = fastest<&add_in_turn<At, Loads>>();
-    add_on_this_processor(effects, at, loads);
+    on_this_processor<&add_in_turn<At, Loads>>(effects, at, loads);
   }
 
  private:
@@ -168,8 +167,5 @@ class EffectsInRows final : public EffectsOfRun {
 /// The sum of what the users' functions add, N m.
 template <class Row>
 Row of_users(const EffectsOfRun& effects, double t, const Row& q, const Row& qd);
-
-/// Compiles the effects of a scene, with the width of a row that its number of links calls for.
-std::shared_ptr<EffectsOfRun> effects_of_run(const Scene& scene);
 
 }  // namespace pendcore

@@ -81,15 +81,19 @@ EquationsOfMotion equations_of_motion(const Scene& scene) {
   return equations;
 }
 
+int mode_at(const EffectBehaviour& effect, double t, const double* q, const double* qd,
+            bool forward) {
+  const int joint = effect.joint();
+  const double phi = joint > 0 ? relative(q, joint) : 0.0;
+  const double phid = joint > 0 ? relative(qd, joint) : 0.0;
+  return effect.mode_at(t, phi, phid, forward);
+}
+
 void choose_modes(EffectsOfRun& effects, double t, const double* q, const double* qd,
                   bool forward) {
   for (std::size_t i = 0; i < effects.effects.size(); ++i) {
     const EffectBehaviour& effect = *effects.effects[i];
-    if (!effect.has_modes()) continue;
-    const int joint = effect.joint();
-    const double phi = joint > 0 ? relative(q, joint) : 0.0;
-    const double phid = joint > 0 ? relative(qd, joint) : 0.0;
-    effects.put_mode(i, effect.mode_at(t, phi, phid, forward));
+    if (effect.has_modes()) effects.put_mode(i, mode_at(effect, t, q, qd, forward));
   }
 }
 

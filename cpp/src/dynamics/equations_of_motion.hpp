@@ -73,8 +73,11 @@ RightHandSide right_hand_side(const EquationsOfMotion& equations);
 void accelerations_in_force(const EquationsOfMotion& equations, double t, const double* q,
                             const double* qd, double* qdd);
 
-/// Freezes every effect to the mode that a state calls for. Where two modes meet, `forward`, the
-/// direction of time, decides.
+/// The mode of an effect that a state calls for. Where two modes meet, `forward`, the direction of
+/// time, decides.
+int mode_at(const EffectBehaviour& effect, double t, const double* q, const double* qd,
+            bool forward);
+/// Freezes every effect to that mode.
 void choose_modes(EffectsOfRun& effects, double t, const double* q, const double* qd, bool forward);
 
 }  // namespace pendcore

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "dynamics/kinematics.hpp"
 #include "pendcore/effects/payload.hpp"
 #include "pendcore/effects/rotor_inertia.hpp"
 

@@ -19,8 +19,8 @@ void InverseDynamics<Number>::compute(const Mechanism<Number>& mechanism, double
   loads_.assign(n, {});
   torques_.resize(n);
   forces_.resize(n);
-  static const auto go = fastest<&InverseDynamics::go_out_and_back>();
-  go(this, &mechanism, t, q.data(), qd.data(), qdd.data());
+  on_this_processor<&InverseDynamics::go_out_and_back>(this, &mechanism, t, q.data(), qd.data(),
+                                                       qdd.data());
 }
 
 template <class Number>

@@ -65,20 +65,15 @@ Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
   }
 }
 
-bool Jacobian::has_differences() const {
-  return equations_.effects && !equations_.effects->users.empty();
-}
-
 void Jacobian::compute(double t) const {
   std::visit(
       [&]<class Form>(const Form& form) {
         if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto accelerations =
-              fastest<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>, wide_sets>();
-          accelerations(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
+          on_this_processor<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>,
+                            wide_sets>(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
         } else {
-          static const auto accelerations = fastest<&accelerations_in_memory<Form, Dual<double>>>();
-          accelerations(&form, t, q_.data(), qd_.data(), qdd_.data());
+          on_this_processor<&accelerations_in_memory<Form, Dual<double>>>(&form, t, q_.data(),
+                                                                          qd_.data(), qdd_.data());
         }
       },
       equations_.form);
@@ -99,8 +94,8 @@ void Jacobian::operator()(double t, const double* q, const double* qd, Eigen::Re
       [&]<class Form>(const Form& form) {
         if constexpr (has_special_kernels_of_rare_runs &&
                       !std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          static const auto both = fastest<&jacobian_in_memory<Form>, special_sets>();
-          both(&form, t, q, qd, by_q.data(), by_qd.data());
+          on_this_processor<&jacobian_in_memory<Form>, special_sets>(&form, t, q, qd, by_q.data(),
+                                                                     by_qd.data());
         }
       },
       equations_.form);

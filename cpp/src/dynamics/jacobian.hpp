@@ -33,11 +33,7 @@ class Jacobian {
   void along(double t, const double* q, const double* qd, const double* dq, const double* dqd,
              double* qdd, double* change) const;
 
-  /// Whether central differences of users' functions are a part of it.
-  bool has_differences() const;
-
  private:
-  /// Computes qdd_ from q_ and qd_.
   void compute(double t) const;
   void direction_by_direction(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
                               Eigen::Ref<Matrix> by_qd) const;

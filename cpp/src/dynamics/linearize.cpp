@@ -3,7 +3,6 @@
 
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/floating_point_environment.hpp"
-#include "arithmetic/sine_cosine.hpp"
 #include "dynamics/compiled_equations.hpp"
 #include "dynamics/contact/held_joints.hpp"
 #include "dynamics/inverse_dynamics.hpp"
@@ -42,11 +41,13 @@ void require_inside_stops(const Scene& scene, const double* q) {
 
 /// The modes that meet at a state beside the mode of an effect there: those of the guards that are
 /// zero, and that of a run which comes to this time from the other side.
-std::vector<int> modes_beside(const EffectBehaviour& effect, int mode, double t, double phi,
-                              double phid, double speed) {
+std::vector<int> modes_beside(const EffectBehaviour& effect, int mode, int from_other_side,
+                              const double* q, const double* qd, double speed) {
   std::vector<int> found;
-  const int before = effect.mode_at(t, phi, phid, false);
-  if (before != mode) found.push_back(before);
+  if (from_other_side != mode) found.push_back(from_other_side);
+  const int joint = effect.joint();
+  const double phi = joint > 0 ? relative(q, joint) : 0.0;
+  const double phid = joint > 0 ? relative(qd, joint) : 0.0;
   const std::vector<Guard> guards = effect.guards(mode);
   for (std::size_t k = 0; k < guards.size(); ++k) {
     const auto& [offset, on_phi, on_phid] = guards[k];
@@ -204,13 +205,11 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectBehaviour& effect = *scene.effects[i];
     if (!effect.has_modes()) continue;
-    const int joint = effect.joint();
-    const double phi = joint > 0 ? relative(q.data(), joint) : 0.0;
-    const double phid = joint > 0 ? relative(qd.data(), joint) : 0.0;
     const int mode = modes[i];
-    const bool is_in_time = effect.mode_at(t, phi, phid, false) != mode;
-    for (const int other :
-         modes_beside(effect, mode, t, phi, phid, equations.held_joints->natural_speed())) {
+    const int from_other_side = mode_at(effect, t, q.data(), qd.data(), false);
+    const bool is_in_time = from_other_side != mode;
+    for (const int other : modes_beside(effect, mode, from_other_side, q.data(), qd.data(),
+                                        equations.held_joints->natural_speed())) {
       modes[i] = other;
       equations.effects->put_mode(i, other);
       const bool is_smooth = here().agree(found);

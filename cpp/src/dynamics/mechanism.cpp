@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "arithmetic/extrapolated_slope.hpp"
+#include "dynamics/equations_of_motion.hpp"
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
@@ -136,11 +137,7 @@ std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::v
 
 std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
   std::vector<int> modes;
-  for (const Effect& effect : scene.effects) {
-    const int joint = effect->joint();
-    modes.push_back(effect->mode_at(t, joint > 0 ? relative(q, joint) : 0.0,
-                                    joint > 0 ? relative(qd, joint) : 0.0, true));
-  }
+  for (const Effect& effect : scene.effects) modes.push_back(mode_at(*effect, t, q, qd, true));
   return modes;
 }
 

@@ -173,4 +173,21 @@ class EffectOf : public EffectBehaviour {
   const Kind given_;
 };
 
+/// An effect whose law is another one on either side of rest: the sign of the rate of its joint, 1
+/// or -1, is its mode.
+template <class Kind>
+class EffectWithSides : public EffectOf<Kind> {
+ public:
+  using EffectOf<Kind>::EffectOf;
+
+  bool has_modes() const override { return true; }
+  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const final {
+    return phid < 0.0 ? -1 : 1;
+  }
+  std::vector<Guard> guards(int mode) const final {
+    return {{.on_phid = static_cast<double>(mode)}};
+  }
+  int next_mode(int mode, std::size_t /*guard*/) const final { return -mode; }
+};
+
 }  // namespace pendcore

@@ -6,9 +6,9 @@
 namespace pendcore {
 namespace {
 
-class DryJointFrictionBehaviour final : public EffectOf<DryJointFriction> {
+class DryJointFrictionBehaviour final : public EffectWithSides<DryJointFriction> {
  public:
-  using EffectOf::EffectOf;
+  using EffectWithSides::EffectWithSides;
 
   /// Coulomb's law, if there is no static peak.
   std::optional<Couple> couple(int mode) const override {
@@ -24,15 +24,6 @@ class DryJointFrictionBehaviour final : public EffectOf<DryJointFriction> {
   std::optional<double> holding_torque() const override {
     return given_.static_.value_or(given_.coulomb);
   }
-
-  bool has_modes() const override { return true; }
-  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const override {
-    return phid < 0.0 ? -1 : 1;
-  }
-  std::vector<Guard> guards(int mode) const override {
-    return {{.on_phid = static_cast<double>(mode)}};
-  }
-  int next_mode(int mode, std::size_t /*guard*/) const override { return -mode; }
 
  private:
   void check_together(const std::string& where) const override {

@@ -20,13 +20,14 @@ void Table::check(const std::string& where) const {
     }
     refuse(where + "t[" + std::to_string(i) + "]", t[i], range);
   }
-  check_count(where + "torque", torque, t.size());
+  require_size(where + "torque", torque, t.size(), ", one for each time");
 }
 
 void Spline::check(const std::string& where) const {
-  check_times(where, t);
-  check_count(where + "x", x, t.size());
-  check_count(where + "y", y, t.size());
+  check_two_or_more(where, t);
+  check_increasing(where + "t", t);
+  require_size(where + "x", x, t.size(), ", one for each time");
+  require_size(where + "y", y, t.size(), ", one for each time");
 }
 
 /// Solves the tridiagonal system of the natural spline by elimination.

@@ -22,18 +22,6 @@ void check_increasing(const std::string& name, const std::vector<double>& times)
   }
 }
 
-void check_times(const std::string& where, const std::vector<double>& times) {
-  check_two_or_more(where, times);
-  check_increasing(where + "t", times);
-}
-
-void check_count(const std::string& where, const std::vector<double>& values, std::size_t count) {
-  if (values.size() == count) return;
-  throw std::invalid_argument(where + ": has " + std::to_string(values.size()) +
-                              " values: must have " + std::to_string(count) +
-                              ", one for each time");
-}
-
 int piece_at(const std::vector<double>& times, double t, bool forward) {
   const int last = static_cast<int>(times.size()) - 2;
   if (forward && t == times.back()) return last;

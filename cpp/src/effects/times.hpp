@@ -20,8 +20,5 @@ double next_of(const std::vector<double>& times, double t, bool forward);
 void check_increasing(const std::string& name, const std::vector<double>& times);
 /// Throws unless there are at least two times t.
 void check_two_or_more(const std::string& where, const std::vector<double>& times);
-/// The same, and they increase.
-void check_times(const std::string& where, const std::vector<double>& times);
-void check_count(const std::string& where, const std::vector<double>& values, std::size_t count);
 
 }  // namespace pendcore

@@ -5,9 +5,9 @@
 namespace pendcore {
 namespace {
 
-class ViscousJointBehaviour final : public EffectOf<ViscousJoint> {
+class ViscousJointBehaviour final : public EffectWithSides<ViscousJoint> {
  public:
-  using EffectOf::EffectOf;
+  using EffectWithSides::EffectWithSides;
 
   std::optional<Couple> couple(int mode) const override {
     return Couple{.on_phid = -given_.damping,
@@ -16,13 +16,6 @@ class ViscousJointBehaviour final : public EffectOf<ViscousJoint> {
   }
 
   bool has_modes() const override { return given_.damping2 != 0.0; }
-  int mode_at(double /*t*/, double /*phi*/, double phid, bool /*forward*/) const override {
-    return phid < 0.0 ? -1 : 1;
-  }
-  std::vector<Guard> guards(int mode) const override {
-    return {{.on_phid = static_cast<double>(mode)}};
-  }
-  int next_mode(int mode, std::size_t /*guard*/) const override { return -mode; }
 
   std::vector<std::string> warnings() const override {
     if (given_.damping >= 0 && given_.damping2 >= 0 && given_.damping3 >= 0) return {};

@@ -26,21 +26,6 @@
 namespace pendcore {
 namespace {
 
-/// Members that a worker takes at once: some milliseconds of work, and in a small ensemble few
-/// enough that every worker gets some.
-constexpr std::size_t usual_chunk = 256;
-std::size_t chunk_for(std::size_t count, int workers) {
-  return std::clamp<std::size_t>(count / (8 * static_cast<std::size_t>(workers)), 1, usual_chunk);
-}
-
-void add(Statistics& sum, const Statistics& one) {
-  sum.nfev += one.nfev;
-  sum.njev += one.njev;
-  sum.nlu += one.nlu;
-  sum.accepted += one.accepted;
-  sum.rejected += one.rejected;
-}
-
 /// Keeps the time of the first of each event that member i found, if that is wanted.
 void keep_first(const MemberResults& results, const std::vector<FoundEvent>& found, std::size_t i) {
   if (results.first_found.empty()) return;
@@ -59,31 +44,31 @@ bool are_watched(const MemberResults& results) {
 class RunReducers final : public StepWatch {
  public:
   RunReducers(const Scene& scene, const Options& options, const MemberResults& results) {
-    if (!results.extremes.empty()) extremes_.emplace(scene.links.size());
-    if (!results.energy_drift.empty()) drift_.emplace(scene);
+    if (!results.extremes.empty()) wanted_.push_back(&extremes_.emplace(scene.links.size()));
+    if (!results.energy_drift.empty()) wanted_.push_back(&drift_.emplace(scene));
     if (!results.sensitivities.empty()) {
       check(scene);  // differences by a number that is not finite have no step
-      sensitivities_.emplace(scene, results.sensitivity_names);
+      wanted_.push_back(&sensitivities_.emplace(scene, results.sensitivity_names));
       sensitivities_->keep(Store::end, options);
     }
   }
-  bool asks_for_dense_output() const override { return extremes_ || sensitivities_; }
+  RunReducers(const RunReducers&) = delete;  // it points to its own reducers
+  RunReducers& operator=(const RunReducers&) = delete;
+
+  bool asks_for_dense_output() const override {
+    return std::ranges::any_of(wanted_, &StepWatch::asks_for_dense_output);
+  }
   void starts(double t, std::span<const double> y) override {
-    if (extremes_) extremes_->starts(t, y);
-    if (drift_) drift_->starts(t, y);
-    if (sensitivities_) sensitivities_->starts(t, y);
+    for (StepWatch* const one : wanted_) one->starts(t, y);
   }
   void steps(const WatchedStep& step) override {
-    if (extremes_) extremes_->steps(step);
-    if (drift_) drift_->steps(step);
-    if (sensitivities_) sensitivities_->steps(step);
+    for (StepWatch* const one : wanted_) one->steps(step);
   }
   void jumps(double t, std::span<const double> y) override {
-    if (extremes_) extremes_->jumps(t, y);
-    if (drift_) drift_->jumps(t, y);
+    for (StepWatch* const one : wanted_) one->jumps(t, y);
   }
   void changes(const WatchedChange& change) override {
-    if (sensitivities_) sensitivities_->changes(change);
+    for (StepWatch* const one : wanted_) one->changes(change);
   }
   /// Keeps what was found of member i, whose status is known.
   void keep(const MemberResults& results, std::size_t i) const {
@@ -100,6 +85,7 @@ class RunReducers final : public StepWatch {
   std::optional<Extremes> extremes_;
   std::optional<EnergyDrift> drift_;
   std::optional<Sensitivities> sensitivities_;
+  std::vector<StepWatch*> wanted_;
 };
 
 /// The options with which members are run, for what is wanted of them.
@@ -120,31 +106,31 @@ LyapunovOptions options_of_exponent(const Options& options) {
           .monitor = {}};
 }
 
+/// What all members have in common.
+struct EnsembleTask {
+  const Scene& scene;
+  const Members& members;
+  const ParameterChoice& choice;
+  double t0, t_end;
+  const Options& options;
+  const MemberResults& results;
+};
+
 /// Runs members one by one, each as simulate() does.
 class OneByOne {
  public:
-  OneByOne(const Scene& scene, const Members& members, const ParameterChoice& choice, double t0,
-           double t_end, const Options& options, const MemberResults& results)
-      : scene_(scene),
-        members_(members),
-        choice_(choice),
-        t0_(t0),
-        t_end_(t_end),
-        options_(options),
-        results_(results),
-        values_(choice.size()) {}
+  explicit OneByOne(const EnsembleTask& task) : task_(task), values_(task.choice.size()) {}
 
   const Statistics& statistics() const { return statistics_; }
-  const Options& options() const { return options_; }
 
   /// Reads member i, and returns its scene, which is valid until the next call.
   const Scene& read(std::size_t i, std::vector<double>& state) {
-    const std::size_t n = scene_.links.size();
+    const std::size_t n = task_.scene.links.size();
     state.resize(2 * n);
-    members_.read(i, state.data(), state.data() + n, values_.data());
-    if (choice_.size() == 0) return scene_;
-    varied_ = scene_;
-    choice_.set(varied_, values_);
+    task_.members.read(i, state.data(), state.data() + n, values_.data());
+    if (task_.choice.size() == 0) return task_.scene;
+    varied_ = task_.scene;
+    task_.choice.set(varied_, values_);
     return varied_;
   }
 
@@ -156,53 +142,51 @@ class OneByOne {
     const std::vector<double> q0{state_.begin(), middle};
     const std::vector<double> qd0{middle, state_.end()};
     const Monitor monitor = [&](double) { return goes_on(); };
-    Options options = options_;
+    const MemberResults& results = task_.results;
+    Options options = task_.options;
     options.monitor = monitor;
     try {
-      RunReducers reducers(scene, options_, results_);
-      if (are_watched(results_)) options.watch = &reducers;
-      const Solution solution = simulate(scene, q0, qd0, t0_, t_end_, std::move(options));
+      RunReducers reducers(scene, task_.options, results);
+      if (are_watched(results)) options.watch = &reducers;
+      const double t0 = task_.t0;
+      const Solution solution = simulate(scene, q0, qd0, t0, task_.t_end, std::move(options));
       if (solution.status == Status::interrupted) return false;
-      if (!results_.largest_exponent.empty() && solution.t_reached != t0_) {
-        LyapunovOptions of_exponent = options_of_exponent(options_);
+      if (!results.largest_exponent.empty() && solution.t_reached != t0) {
+        LyapunovOptions of_exponent = options_of_exponent(task_.options);
         of_exponent.monitor = monitor;
-        const TangentGrowth found = lyapunov(scene, q0, qd0, t0_, solution.t_reached, of_exponent);
+        const TangentGrowth found = lyapunov(scene, q0, qd0, t0, solution.t_reached, of_exponent);
         if (found.status == Status::interrupted) return false;
         if (text(found.status).success) {
-          results_.largest_exponent[i] = found.growth.back() / std::abs(found.t_reached - t0_);
+          results.largest_exponent[i] = found.growth.back() / std::abs(found.t_reached - t0);
         }
       }
       keep(i, solution);
-      reducers.keep(results_, i);
+      reducers.keep(results, i);
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::invalid_argument&) {
-      results_.status[i] = code(MemberStatus::refused);
+      results.status[i] = code(MemberStatus::refused);
     }
     return true;
   }
 
  private:
   void keep(std::size_t i, const Solution& solution) {
-    const std::size_t row = 2 * scene_.links.size();
-    const std::size_t size = results_.states.size() / members_.count;
-    double* to = results_.states.data() + i * size;
+    const MemberResults& results = task_.results;
+    const std::size_t row = 2 * task_.scene.links.size();
+    const std::size_t size = results.states.size() / results.status.size();
+    double* to = results.states.data() + i * size;
     const auto columns = static_cast<std::size_t>(solution.dimension);
     for (std::size_t k = 0; k < solution.t.size(); ++k, to += row) {
       std::copy_n(solution.states.data() + k * columns, row, to);
     }
-    results_.t[i] = solution.t_reached;
-    keep_first(results_, solution.found, i);
+    results.t[i] = solution.t_reached;
+    keep_first(results, solution.found, i);
     add(statistics_, solution.statistics);
-    results_.status[i] = code(solution.status);
+    results.status[i] = code(solution.status);
   }
 
-  const Scene& scene_;
-  const Members& members_;
-  const ParameterChoice& choice_;
-  double t0_, t_end_;
-  const Options& options_;
-  const MemberResults& results_;
+  const EnsembleTask& task_;
   Statistics statistics_;
   std::vector<double> state_, values_;
   Scene varied_;
@@ -211,13 +195,13 @@ class OneByOne {
 /// The members that a worker takes, for lanes.
 class MembersOfWorker final : public LaneSource {
  public:
-  MembersOfWorker(SharedWork& work, bool on_calling_thread, OneByOne& one_by_one,
-                  const MemberResults& results, bool keeps_times)
-      : work_(work),
+  MembersOfWorker(const EnsembleTask& task, SharedWork& work, bool on_calling_thread,
+                  OneByOne& one_by_one)
+      : options_(task.options),
+        results_(task.results),
+        work_(work),
         on_calling_thread_(on_calling_thread),
-        one_by_one_(one_by_one),
-        results_(results),
-        keeps_times_(keeps_times) {}
+        one_by_one_(one_by_one) {}
 
   const Scene* next(LaneMember& member) override {
     if (chunk_.is_empty()) chunk_ = work_.take();
@@ -226,8 +210,7 @@ class MembersOfWorker final : public LaneSource {
     return &one_by_one_.read(member.number, member.state);
   }
   std::unique_ptr<StepWatch> watch(const Scene& scene) override {
-    return watches() ? std::make_unique<RunReducers>(scene, one_by_one_.options(), results_)
-                     : nullptr;
+    return watches() ? std::make_unique<RunReducers>(scene, options_, results_) : nullptr;
   }
   bool watches() const override { return are_watched(results_); }
   bool watches_dense_output() const override { return !results_.extremes.empty(); }
@@ -238,7 +221,8 @@ class MembersOfWorker final : public LaneSource {
   void ended(const LaneMember& member) override {
     results_.t[member.number] = member.t;
     const std::size_t size = results_.states.size() / results_.status.size();
-    std::ranges::copy(keeps_times_ ? member.recorded.states : member.state,
+    const bool keeps_times = options_.store == Store::times;
+    std::ranges::copy(keeps_times ? member.recorded.states : member.state,
                       results_.states.data() + member.number * size);
     keep_first(results_, member.recorded.found, member.number);
     results_.status[member.number] = code(member.status);
@@ -251,11 +235,11 @@ class MembersOfWorker final : public LaneSource {
   bool goes_on() override { return work_.goes_on(on_calling_thread_); }
 
  private:
+  const Options& options_;
+  const MemberResults& results_;
   SharedWork& work_;
   bool on_calling_thread_;
   OneByOne& one_by_one_;
-  const MemberResults& results_;
-  bool keeps_times_;
   Chunk chunk_;
 };
 
@@ -283,14 +267,13 @@ EnsembleEnding run_ensemble(const Scene& scene, const Members& members, double t
   }
   EnsembleEnding ending;
   if (members.count == 0) return ending;
-  const int workers = number_of_workers(limits, members.count);
-  SharedWork work(members.count, chunk_for(members.count, workers), limits);
+  SharedWork work(members.count, limits);
+  const EnsembleTask task{scene, members, choice, t0, t_end, own, results};
   std::mutex mutex;
-  work.run(workers, [&](bool on_calling_thread) {
+  work.run([&](bool on_calling_thread) {
     const FloatingPointEnvironment ieee;
-    OneByOne one_by_one(scene, members, choice, t0, t_end, own, results);
-    MembersOfWorker members_of_worker(work, on_calling_thread, one_by_one, results,
-                                      own.store == Store::times);
+    OneByOne one_by_one(task);
+    MembersOfWorker members_of_worker(task, work, on_calling_thread, one_by_one);
     // The largest exponent takes a run of its own, and derivatives are found for one at a time.
     const bool in_lanes = results.largest_exponent.empty() && results.sensitivities.empty();
     const std::unique_ptr<LaneRunner> lanes =

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <variant>
 
 #include "dynamics/chain/chain.hpp"
 #include "dynamics/row.hpp"
@@ -160,23 +159,16 @@ struct FewLinksInLanes {
   Effects effects;
 };
 
-template <class Real>
-using ThreeLinksInLanes = FewLinksInLanes<Real, 3, false>;
-template <class Real>
-using ThreeCoupledLinks = FewLinksInLanes<Real, 3, true>;
-template <class Real>
-using FourLinksInLanes = FewLinksInLanes<Real, 4, false>;
-template <class Real>
-using FourCoupledLinks = FewLinksInLanes<Real, 4, true>;
-
 /// Calls use<Form>() with the form of a trajectory that Runge-Kutta methods take in lanes. Returns
 /// whether there is one.
-template <class Use>
+template <class Real, class Use>
 bool with_runge_kutta_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
-  return with_first_form<OneLinkWithCouples, OneLinkWithEverything, TwoBareLinksInLanes,
-                         TwoLinksWithCouples, TwoLinksWithWaves, TwoLinksWithLaws,
-                         TwoLinksWithEverything, ThreeLinksInLanes, ThreeCoupledLinks,
-                         FourLinksInLanes, FourCoupledLinks>(scene, equations, use);
+  return with_first_form<OneLinkInLanes<Real, true>, OneLinkInLanes<Real, false>,
+                         TwoBareLinksInLanes<Real>, TwoLinksInLanes<Real, Parts::couples>,
+                         TwoLinksInLanes<Real, Parts::waves>, TwoLinksInLanes<Real, Parts::laws>,
+                         TwoLinksInLanes<Real, Parts::everything>, FewLinksInLanes<Real, 3, false>,
+                         FewLinksInLanes<Real, 3, true>, FewLinksInLanes<Real, 4, false>,
+                         FewLinksInLanes<Real, 4, true>>(scene, equations, use);
 }
 
 }  // namespace pendcore

@@ -36,9 +36,9 @@ inline std::vector<int> kinds_of(const EquationsOfMotion& equations) {
 
 /// Calls use<Form>() with the first of these forms that a trajectory has. Returns whether there is
 /// one.
-template <template <class> class Form, template <class> class... Others, class Use>
+template <class Form, class... Others, class Use>
 bool with_first_form(const Scene& scene, const EquationsOfMotion& equations, const Use& use) {
-  if (Form<Pack<4>>::has(scene, equations)) {
+  if (Form::has(scene, equations)) {
     use.template operator()<Form>();
     return true;
   }
@@ -82,11 +82,6 @@ struct OneLinkInLanes
   EffectsInLanes<EachLink<Real, 1>, Real> in_lanes;
 };
 
-template <class Real>
-using OneLinkWithCouples = OneLinkInLanes<Real, true>;
-template <class Real>
-using OneLinkWithEverything = OneLinkInLanes<Real, false>;
-
 /// Two links without effects.
 template <class Real>
 struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
@@ -127,13 +122,5 @@ struct TwoLinksInLanes : LoadedDoublePendulum<EffectsInLanes<Two<Real>, Real>, p
   EffectsInLanes<Two<Real>, Real> in_lanes;
   Couples<Two<Real>> no_couples;
 };
-template <class Real>
-using TwoLinksWithCouples = TwoLinksInLanes<Real, Parts::couples>;
-template <class Real>
-using TwoLinksWithWaves = TwoLinksInLanes<Real, Parts::waves>;
-template <class Real>
-using TwoLinksWithLaws = TwoLinksInLanes<Real, Parts::laws>;
-template <class Real>
-using TwoLinksWithEverything = TwoLinksInLanes<Real, Parts::everything>;
 
 }  // namespace pendcore

@@ -2,7 +2,6 @@
 /// Fills lanes with members and takes their steps, whatever the method.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -41,22 +40,20 @@ template <int width>
 class LaneLoop : public RecordingLanes<width> {
   using Base = RecordingLanes<width>;
   using Base::members_;
-  using Base::options_;
   using Base::scene_;
   using Base::statistics_;
   using Base::t0_;
-  using Base::t_end_;
 
  public:
   LaneLoop(const LaneTask& task, std::string_view method)
       : RecordingLanes<width>(task.scene, task.t0, task.t_end, task.options),
-        method_(method),
         interval_{t_end_, options_.max_step, options_.max_steps},
         rtol_(relative_tolerances(options_, scene_.links.size())),
         atol_(absolute_tolerances(options_, scene_.links.size())),
         rate_(2 * scene_.links.size()),
-        kinds_(kinds_of(*task.equations)),
-        equations_(task.equations) {}
+        equations_(task.equations),
+        method_(method),
+        kinds_(kinds_of(*task.equations)) {}
 
   void run(LaneSource& source) override {
     this->choose_what_is_recorded(source);
@@ -97,16 +94,18 @@ class LaneLoop : public RecordingLanes<width> {
  protected:
   using AfterRecording = typename Base::AfterRecording;
   using Base::get_state;
+  using Base::options_;
   using Base::steps;
+  using Base::t_end_;
   /// The derivative at the state of a lane, and what the method keeps between steps.
   virtual void get_derivative(int lane, double* dydt) = 0;
   virtual std::vector<double> saved_state(int lane) = 0;
   virtual Attention take_steps() = 0;
-  /// Puts equations(), those of a scene, into a lane.
+  /// Puts equations_, those of a scene, into a lane.
   virtual void put_equations(int lane, const Scene& scene) = 0;
-  /// Puts a start, at which the rates are rate(), into a lane.
+  /// Puts a start, at which the rates are rate_, into a lane.
   virtual void put_start(int lane, const std::vector<double>& y) = 0;
-  virtual long long evaluations_of(int lane) const = 0;
+  virtual long long evaluations_of(int lane) = 0;
   /// Whether the last step of a lane suggests that the member is stiff.
   virtual bool looks_stiff(int /*lane*/) { return false; }
 
@@ -117,13 +116,12 @@ class LaneLoop : public RecordingLanes<width> {
     in_lanes.prepare(scene_, *equations_);
     for (int lane = 0; lane < width; ++lane) in_lanes.put(lane, scene_, *equations_);
   }
-  /// Those of the member that begins.
-  const EquationsOfMotion& equations() const { return *equations_; }
   Stepper& stepper(int lane) const override { return *steppers_[lane]; }
-  const std::vector<double>& rate() const { return rate_; }
-  const std::vector<double>& rtol() const { return rtol_; }
-  const std::vector<double>& atol() const { return atol_; }
-  const LaneInterval& interval() const { return interval_; }
+
+  LaneInterval interval_;
+  std::vector<double> rtol_, atol_;
+  std::vector<double> rate_;                            ///< at the start of the member that begins
+  std::shared_ptr<const EquationsOfMotion> equations_;  ///< those of that member
 
  private:
   /// Begins the next member in a lane, if there is one.
@@ -159,10 +157,15 @@ class LaneLoop : public RecordingLanes<width> {
     member.status = whole.status;
     member.recorded.states = whole.states;
     member.recorded.found = whole.found;
-    statistics_.accepted += whole.statistics.accepted;
-    statistics_.rejected += whole.statistics.rejected;
-    statistics_.nfev += whole.statistics.nfev;
+    add(statistics_, whole.statistics);
     source.ended(member);
+  }
+
+  /// What the member of a lane did so far.
+  Statistics statistics_of(int lane) {
+    return {.nfev = evaluations_of(lane),
+            .accepted = steps().accepted[lane],
+            .rejected = steps().rejected[lane]};
   }
 
   /// The run of a lane so far, as if a limit had stopped it.
@@ -176,16 +179,13 @@ class LaneLoop : public RecordingLanes<width> {
     run.n = static_cast<int>(scene_.links.size());
     run.dimension = static_cast<int>(size);
     run.start.resize(size);
-    run.resumable_found = run.found.size();
-    run.resumable_t = run.t.size();
+    run.resumable_kept = {.t = run.t.size(), .steps = 0, .found = run.found.size()};
     IntegratorState state;
     state.t = {at.t[lane], at.t_low[lane]};
     state.h = at.h[lane];
     state.h_is_max_step = std::abs(state.h) >= options_.max_step;
     state.control = {at.log2_error_before[lane], at.after_rejection[lane] != 0};
-    state.statistics.accepted = at.accepted[lane];
-    state.statistics.rejected = at.rejected[lane];
-    state.statistics.nfev = evaluations_of(lane);
+    state.statistics = statistics_of(lane);
     state.y.resize(size);
     state.dydt.resize(size);
     get_state(lane, state.y.data());
@@ -241,18 +241,12 @@ class LaneLoop : public RecordingLanes<width> {
     get_state(lane, member.state.data());
     member.t = steps().t[lane];
     member.status = status;
-    statistics_.accepted += steps().accepted[lane];
-    statistics_.rejected += steps().rejected[lane];
-    statistics_.nfev += evaluations_of(lane);
+    add(statistics_, statistics_of(lane));
     source.ended(member);
   }
 
   std::string_view method_;
-  LaneInterval interval_;
-  std::vector<double> rtol_, atol_;
-  std::vector<double> rate_;
-  std::vector<int> kinds_;  ///< what all members have in common
-  std::shared_ptr<const EquationsOfMotion> equations_;
+  std::vector<int> kinds_;            ///< what all members have in common
   std::shared_ptr<Stepper> stepper_;  ///< of the members that begin
   std::array<std::shared_ptr<Stepper>, width> steppers_;
   bool is_exhausted_ = false;  ///< no member is left to begin

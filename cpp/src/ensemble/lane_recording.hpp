@@ -13,7 +13,6 @@
 #include "ensemble/lanes.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/recorder.hpp"
-#include "simulate/step_watch.hpp"
 
 namespace pendcore {
 
@@ -29,7 +28,6 @@ class RecordingLanes : public LaneRunner {
   }
 
   virtual LaneSteps<width>& steps() = 0;
-  virtual const LaneSteps<width>& steps() const = 0;
   virtual void put_state(int lane, const double* y) = 0;
   virtual void get_state(int lane, double* y) const = 0;
   virtual void get_state_before(int lane, double* y) const = 0;  ///< that before the last step
@@ -39,11 +37,9 @@ class RecordingLanes : public LaneRunner {
   /// What a lane evaluates: its member may have other parameters than the one that began last.
   virtual Stepper& stepper(int lane) const = 0;
 
-  const Options& options() const { return options_; }
   double direction() const { return t_end_ < t0_ ? -1.0 : 1.0; }
-  double t_end() const { return t_end_; }
   /// The steps of a lane whose dense output a single run computes.
-  long long interpolated(int lane) const {
+  long long interpolated(int lane) {
     return steps().interpolates_every_step ? steps().accepted[lane] : interpolated_[lane];
   }
 
@@ -65,7 +61,6 @@ class RecordingLanes : public LaneRunner {
     records_ = watches || at.needs_dense_output;
   }
 
-  /// Begins to record the member that begins in a lane.
   void start_recording(int lane, const Scene& scene, LaneSource& source) {
     LaneMember& member = members_[lane];
     interpolated_[lane] = 0;

@@ -7,14 +7,12 @@
 #include <limits>
 #include <span>
 
-#include "arithmetic/epsilon.hpp"
 #include "arithmetic/instruction_set.hpp"
 #include "arithmetic/pack.hpp"
 #include "arithmetic/power.hpp"
 #include "arithmetic/two_double.hpp"
 #include "integrate/loop/step_control.hpp"
 #include "integrate/loop/stiffness.hpp"
-#include "integrate/loop/trial.hpp"
 #include "simulate/event_levels.hpp"
 
 namespace pendcore {

@@ -14,7 +14,6 @@ std::unique_ptr<LaneRunner> lanes_of(std::string_view method, const LaneTask& ta
   return make_runge_kutta_lanes<set>(method, task);
 }
 
-/// Whether the lanes of a method have the equations of a scene.
 bool has_lanes(std::string_view method, const Scene& scene, const EquationsOfMotion& equations) {
   if (instruction_set() < least_of_special_kernels || !equations.are_steady()) return false;
   if (method == taylor.info.name) {
@@ -23,7 +22,7 @@ bool has_lanes(std::string_view method, const Scene& scene, const EquationsOfMot
   }
   const bool is_embedded =
       method == dormand_prince_5.info.name || method == dormand_prince_8.info.name;
-  return is_embedded && with_runge_kutta_form(scene, equations, []<template <class> class>() {});
+  return is_embedded && with_runge_kutta_form<Pack<4>>(scene, equations, []<class>() {});
 }
 
 }  // namespace

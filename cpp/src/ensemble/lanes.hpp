@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -19,6 +18,15 @@
 #include "pendcore/solution.hpp"
 
 namespace pendcore {
+
+/// Adds what a run did to the sums of an ensemble.
+inline void add(Statistics& sum, const Statistics& one) {
+  sum.nfev += one.nfev;
+  sum.njev += one.njev;
+  sum.nlu += one.nlu;
+  sum.accepted += one.accepted;
+  sum.rejected += one.rejected;
+}
 
 /// A member that is about to begin, or has ended.
 struct LaneMember {

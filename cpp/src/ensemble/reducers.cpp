@@ -56,8 +56,6 @@ void EnergyDrift::starts(double t, std::span<const double> y) {
   largest_ = 0.0;
 }
 
-void EnergyDrift::steps(const WatchedStep& step) { jumps(step.t, step.y); }
-
 void EnergyDrift::jumps(double t, std::span<const double> y) {
   const double drift = std::abs(unexplained(t, y) - start_);
   if (!(drift <= largest_)) largest_ = drift;  // what is not a number stays

@@ -28,8 +28,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     this->prepare(all_.memory.system.dynamics);
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
-        put_row(all_.memory.rtol[i], lane, this->rtol().data() + i * n_);
-        put_row(all_.memory.atol[i], lane, this->atol().data() + i * n_);
+        put_row(all_.memory.rtol[i], lane, this->rtol_.data() + i * n_);
+        put_row(all_.memory.atol[i], lane, this->atol_.data() + i * n_);
       }
     }
   }
@@ -50,9 +50,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   }
   std::vector<double> saved_state(int /*lane*/) override { return {}; }
   LaneSteps<width>& steps() override { return all_; }
-  const LaneSteps<width>& steps() const override { return all_; }
   Attention take_steps() override {
-    Attention attention = take_steps_(&all_, &this->interval(), rounds_at_once);
+    Attention attention = take_steps_(&all_, &this->interval_, rounds_at_once);
     const LaneBits every = all_.interpolates_every_step ? attention.recorded : 0;
     if ((attention.sampled | attention.searched | every) != 0) {
       attention.recorded |= attention.searched & interpolate_(&all_);
@@ -60,21 +59,21 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     return attention;
   }
   void put_equations(int lane, const Scene& scene) override {
-    all_.memory.system.dynamics.put(lane, scene, this->equations());
+    all_.memory.system.dynamics.put(lane, scene, *this->equations_);
   }
   void put_start(int lane, const std::vector<double>& y) override {
-    const Options& options = this->options();
+    const Options& options = this->options_;
     double h = std::min(options.first_step.value_or(options.max_step), options.max_step);
     if (!options.first_step) {
-      this->stepper(lane).start(y.data(), this->rate().data());
-      h = first_step(this->stepper(lane), all_.t[lane], this->t_end(), options.max_step,
-                     this->rtol().data(), this->atol().data())
+      this->stepper(lane).start(y.data(), this->rate_.data());
+      h = first_step(this->stepper(lane), all_.t[lane], this->t_end_, options.max_step,
+                     this->rtol_.data(), this->atol_.data())
               .h;
     }
     all_.h[lane] = this->direction() * h;
     for (int i = 0; i < 2; ++i) {
       put_row(all_.memory.y[i], lane, y.data() + i * n_);
-      put_row(all_.memory.k[0][i], lane, this->rate().data() + i * n_);
+      put_row(all_.memory.k[0][i], lane, this->rate_.data() + i * n_);
     }
   }
   void put_state(int lane, const double* y) override {
@@ -90,10 +89,10 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     for (const auto& number : all_.rows) *coefficients++ = number[lane];
     return true;
   }
-  long long evaluations_of(int lane) const override {
+  long long evaluations_of(int lane) override {
     constexpr int of_dense_output = All::Memory::all_stages - All::stages;
     const long long attempts = all_.accepted[lane] + all_.rejected[lane];
-    return (this->options().first_step ? 1 : 2) + (All::stages - 1) * attempts +
+    return (this->options_.first_step ? 1 : 2) + (All::stages - 1) * attempts +
            of_dense_output * this->interpolated(lane);
   }
 
@@ -108,8 +107,7 @@ template <const auto& method, InstructionSet set>
 std::unique_ptr<LaneRunner> runner_of(const LaneTask& task) {
   using Real = Pack<width_on(set)>;
   std::unique_ptr<LaneRunner> runner;
-  with_runge_kutta_form(task.scene, *task.equations, [&]<template <class> class AnyForm>() {
-    using Form = AnyForm<Real>;
+  with_runge_kutta_form<Real>(task.scene, *task.equations, [&]<class Form>() {
     using Row = typename Form::Links;
     if constexpr (Form::is_called) {
       using System = FirstOrder<Form>;

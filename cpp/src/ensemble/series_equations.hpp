@@ -99,10 +99,6 @@ struct FewLinksSeriesInLanes {
     expand_few_links<Real, n>(constants, laws, t, y, sigma, order, rows);
   }
 };
-template <class Real>
-using ThreeLinksSeries = FewLinksSeriesInLanes<Real, 3>;
-template <class Real>
-using FourLinksSeries = FewLinksSeriesInLanes<Real, 4>;
 
 /// A chain with any smooth effects, for what the other forms do not have. `n` is the number of its
 /// links, or 0 for any number from three on, which is known at run time.
@@ -142,9 +138,5 @@ class ChainSeriesInLanes {
   std::shared_ptr<Effects> effects_ = std::make_shared<Effects>();
   std::unique_ptr<ChainSeries<Real, Effects>> series_;
 };
-template <class Real>
-using ChainOfTwo = ChainSeriesInLanes<Real, 2>;
-template <class Real>
-using LongerChain = ChainSeriesInLanes<Real, 0>;
 
 }  // namespace pendcore

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,7 +13,7 @@
 namespace pendcore {
 namespace {
 
-template <template <class> class Form, InstructionSet set>
+template <class Form, InstructionSet set>
 class SeriesRunner final : public LaneLoop<width_on(set)> {
   static constexpr int width = width_on(set);
   using All = SeriesLanes<Form, width>;
@@ -22,15 +21,15 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
  public:
   explicit SeriesRunner(const LaneTask& task) : LaneLoop<width>(task, taylor.info.name) {
     double tightest = 1.0;
-    for (std::size_t i = 0; i < this->rtol().size(); ++i) {
-      tightest = std::min(tightest, std::max(this->rtol()[i], this->atol()[i]));
+    for (std::size_t i = 0; i < this->rtol_.size(); ++i) {
+      tightest = std::min(tightest, std::max(this->rtol_[i], this->atol_[i]));
     }
     this->prepare(all_.equations);
-    all_.expand_kernel = only<&expand_in_lanes<Form, width>, set>();
+    all_.expand_kernel = only<&expand_in_lanes<Form, Pack<width>>, set>();
     all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
-      all_.rtol[i] = broadcast<Pack<width>>(this->rtol()[i]);
-      all_.atol[i] = broadcast<Pack<width>>(this->atol()[i]);
+      all_.rtol[i] = broadcast<Pack<width>>(this->rtol_[i]);
+      all_.atol[i] = broadcast<Pack<width>>(this->atol_[i]);
     }
     all_.log2_count = approximate_log2(static_cast<double>(all_.size()));
     // Lanes without a member have numbers that do no harm.
@@ -45,14 +44,13 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
   }
   std::vector<double> saved_state(int lane) override { return {all_.sigma[lane]}; }
   LaneSteps<width>& steps() override { return all_; }
-  const LaneSteps<width>& steps() const override { return all_; }
-  Attention take_steps() override { return take_steps_(&all_, &this->interval(), rounds_at_once); }
+  Attention take_steps() override { return take_steps_(&all_, &this->interval_, rounds_at_once); }
   void put_equations(int lane, const Scene& scene) override {
-    all_.equations.put(lane, scene, this->equations());
+    all_.equations.put(lane, scene, *this->equations_);
   }
   void put_start(int lane, const std::vector<double>& y) override {
     put_state(lane, y.data());
-    const double rate = taylor_detail::squared_rate(this->rate().data(), all_.links());
+    const double rate = taylor_detail::squared_rate(this->rate_.data(), all_.links());
     all_.sigma[lane] = taylor_detail::first_sigma(rate);
     all_.begins[lane] = -1;
     all_.h[lane] = this->direction();
@@ -79,7 +77,7 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
     }
     return std::abs(x) <= taylor_detail::no_large_powers;
   }
-  long long evaluations_of(int lane) const override {
+  long long evaluations_of(int lane) override {
     return 1 + all_.accepted[lane] + all_.rejected[lane] +
            evaluations_of_stiffness * look_count_[lane];
   }
@@ -109,12 +107,13 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
 
 template <InstructionSet set>
 std::unique_ptr<LaneRunner> make_series_lanes(const LaneTask& task) {
+  using Real = Pack<width_on(set)>;
   std::unique_ptr<LaneRunner> runner;
-  with_first_form<BareDoublePendulumSeries, LoadedDoublePendulumSeries, ThreeLinksSeries,
-                  FourLinksSeries, ChainOfTwo, LongerChain>(
-      task.scene, *task.equations, [&]<template <class> class Form>() {
-        runner = std::make_unique<SeriesRunner<Form, set>>(task);
-      });
+  with_first_form<BareDoublePendulumSeries<Real>, LoadedDoublePendulumSeries<Real>,
+                  FewLinksSeriesInLanes<Real, 3>, FewLinksSeriesInLanes<Real, 4>,
+                  ChainSeriesInLanes<Real, 2>, ChainSeriesInLanes<Real, 0>>(
+      task.scene, *task.equations,
+      [&]<class Form>() { runner = std::make_unique<SeriesRunner<Form, set>>(task); });
   return runner;
 }
 

@@ -18,28 +18,26 @@ namespace pendcore {
 
 /// Computes the series from y at time t in units of sigma. It is a kernel of its own, which a step
 /// calls.
-template <template <class> class Form, int width>
-PENDCORE_INLINE void expand_in_lanes(const Form<Pack<width>>* equations, const Pack<width>* t,
-                                     const Pack<width>* y, const Pack<width>* sigma, int order,
-                                     Pack<width>* rows) {
+template <class Form, class Real>
+PENDCORE_INLINE void expand_in_lanes(const Form* equations, const Real* t, const Real* y,
+                                     const Real* sigma, int order, Real* rows) {
   equations->expand(*t, y, *sigma, order, rows);
 }
-template <template <class> class Form, int width>
-using ExpandKernel = decltype(&expand_in_lanes<Form, width>);
 
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
-template <template <class> class Form, int width>
+template <class Form, int width>
 struct SeriesLanes : LaneSteps<width> {
   using Real = Pack<width>;
   using Integers = typename Lanes<Real>::Integers;
-  using Equations = Form<Real>;
+  using Equations = Form;
   /// Not std::vector: its allocator asks alignof, which GCC reports as on the baseline
   /// (effects/couples.hpp), while `new` has the true alignment.
   using Packs = std::unique_ptr<Real[]>;
 
   Equations equations;
-  ExpandKernel<Form, width> expand_kernel = nullptr;  ///< a clone of expand_in_lanes()
+  /// A clone of it.
+  decltype(&expand_in_lanes<Form, Real>) expand_kernel = nullptr;
   Packs y, y_new, rtol, atol;
   Real sigma = {}, sigma_new = {};      ///< s, the unit of time of a series
   Real largest = {}, largest_new = {};  ///< s, the step that the tolerances allow
@@ -186,7 +184,7 @@ PENDCORE_INLINE std::array<Real, count> increments(const Real* rows, std::ptrdif
 }  // namespace lanes_detail
 
 /// Takes up to `rounds` steps in each lane, until some need attention.
-template <template <class> class Form, int width>
+template <class Form, int width>
 PENDCORE_INLINE Attention take_series_steps(SeriesLanes<Form, width>* all,
                                             const LaneInterval* interval, int rounds) {
   namespace detail = lanes_detail;

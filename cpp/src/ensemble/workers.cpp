@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace pendcore {
 
-SharedWork::SharedWork(std::size_t count, std::size_t chunk, const EnsembleLimits& limits)
-    : count_(count), chunk_(std::max<std::size_t>(chunk, 1)), limits_(limits) {}
+SharedWork::SharedWork(std::size_t count, const EnsembleLimits& limits)
+    : count_(count), limits_(limits) {
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t wanted = limits.workers > 0 ? limits.workers : processors;
+  workers_ = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1));
+  // Some milliseconds of work, and in a small ensemble few enough that every worker gets some.
+  constexpr std::size_t usual_chunk = 256;
+  chunk_ = std::clamp<std::size_t>(count / (8 * workers_), 1, usual_chunk);
+}
 
 Chunk SharedWork::take() {
   if (status_.load(std::memory_order_relaxed) != Status::finished) return {};
@@ -32,37 +38,27 @@ bool SharedWork::goes_on(bool on_calling_thread) {
   return status_.load(std::memory_order_relaxed) == Status::finished;
 }
 
-void SharedWork::fail(std::exception_ptr error) {
-  const std::scoped_lock lock(mutex_);
-  if (!error_) error_ = std::move(error);
-  status_ = Status::interrupted;
-}
-
-void SharedWork::run(int workers, const std::function<void(bool)>& work) {
+void SharedWork::run(const std::function<void(bool)>& work) {
   const auto guarded = [&](bool on_calling_thread) {
     try {
       work(on_calling_thread);
     } catch (...) {
-      fail(std::current_exception());
+      const std::scoped_lock lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      status_ = Status::interrupted;
     }
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < workers; ++i) others.emplace_back(guarded, false);
+    for (std::size_t i = 1; i < workers_; ++i) others.emplace_back(guarded, false);
     guarded(true);
     // The calling thread may be done long before the others: until they are, it looks at the clock
     // and calls the monitor.
-    while (done() < count_ && goes_on(true) && workers > 1) {
+    while (done() < count_ && goes_on(true) && workers_ > 1) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
   if (error_) std::rethrow_exception(error_);
-}
-
-int number_of_workers(const EnsembleLimits& limits, std::size_t count) {
-  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t wanted = limits.workers > 0 ? limits.workers : processors;
-  return static_cast<int>(std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1)));
 }
 
 }  // namespace pendcore

@@ -26,19 +26,16 @@ struct Chunk {
 
 class SharedWork {
  public:
-  SharedWork(std::size_t count, std::size_t chunk, const EnsembleLimits& limits);
+  SharedWork(std::size_t count, const EnsembleLimits& limits);
 
   /// The next members for a worker; an empty chunk if there are none, or if the work is stopped.
   Chunk take();
-  /// Counts members that are done.
   void count(std::size_t members) { done_.fetch_add(members, std::memory_order_relaxed); }
   /// Whether to go on. The calling thread may find that the time is up, or call the monitor.
   bool goes_on(bool on_calling_thread);
-  /// Ends the work of all because of an exception, which run() throws.
-  void fail(std::exception_ptr error);
 
   /// Runs work(on_calling_thread) on all workers until each returns. Throws what one of them threw.
-  void run(int workers, const std::function<void(bool)>& work);
+  void run(const std::function<void(bool)>& work);
 
   std::size_t done() const { return done_.load(); }
   Status status() const { return status_.load(); }
@@ -46,7 +43,9 @@ class SharedWork {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::size_t count_, chunk_;
+  std::size_t count_;
+  std::size_t workers_;  ///< limits.workers, or one for each processor
+  std::size_t chunk_;
   const EnsembleLimits& limits_;
   std::atomic<std::size_t> next_ = 0;
   std::atomic<std::size_t> done_ = 0;
@@ -56,8 +55,5 @@ class SharedWork {
   std::mutex mutex_;
   std::exception_ptr error_;
 };
-
-/// The number of workers for so many members: limits.workers, or one for each processor.
-int number_of_workers(const EnsembleLimits& limits, std::size_t count);
 
 }  // namespace pendcore

@@ -15,6 +15,12 @@ namespace pendcore {
 template <const auto&... tables>
 struct MethodList {
   static constexpr std::array infos = {&tables.info...};
+
+  /// Calls use<table>() with the table of the method of that name.
+  template <class Use>
+  static void with(std::string_view name, const Use& use) {
+    ((tables.info.name == name ? use.template operator()<tables>() : void()), ...);
+  }
 };
 
 using Methods = MethodList<dormand_prince_5,  // order 5(4): the textbook's ode45

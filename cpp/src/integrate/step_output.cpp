@@ -33,9 +33,8 @@ void StepOutput::straighten(double* coefficients) {
 
 void StepOutput::sample(const double* coefficients, const TwoDouble& start, double h,
                         const double* times, int count, double* states) const {
-  static const auto sample_on_this_processor = fastest<&sample_rows>();
-  sample_on_this_processor(coefficients, start, h, times, count, states, dimension(),
-                           interpolant_degree());
+  on_this_processor<&sample_rows>(coefficients, start, h, times, count, states, dimension(),
+                                  interpolant_degree());
 }
 
 }  // namespace pendcore

@@ -1,6 +1,5 @@
 #include "integrate/stiff_switching.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <new>
 #include <utility>

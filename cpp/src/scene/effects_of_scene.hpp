@@ -23,7 +23,6 @@ std::optional<std::size_t> without_series(const Scene& scene);
 /// Whether some effect is a function of the user's.
 bool has_functions(const Scene& scene);
 
-/// Whether a Lock holds each joint.
 std::vector<bool> locked_joints(const Scene& scene);
 
 }  // namespace pendcore

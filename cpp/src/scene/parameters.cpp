@@ -29,7 +29,6 @@ constexpr std::array<LinkField, numbers_of_link> link_fields = {{
     {"inertia", "kg m^2", &Link::inertia},
 }};
 
-/// Changes the numbers of all effects of a scene as `visit` does.
 void change_effects(Scene& scene, const NumberVisitor& visit) {
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const std::string prefix = "effect[" + std::to_string(i + 1) + "].";

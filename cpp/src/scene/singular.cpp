@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"

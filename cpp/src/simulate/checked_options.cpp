@@ -38,15 +38,6 @@ std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
 
 void check_times(const std::vector<double>& times, double t0, double t_end) {
   const double direction = t_end < t0 ? -1.0 : 1.0;
-  if (times.empty()) return;
-  // If times are in order and the first and the last lie within the run, all do. Only otherwise is
-  // the wrong one looked for.
-  bool is_right =
-      (times.front() - t0) * direction >= 0.0 && (t_end - times.back()) * direction >= 0.0;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    is_right &= (times[i] - times[i - 1]) * direction > 0.0;
-  }
-  if (is_right) return;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!((times[i] - t0) * direction >= 0.0 && (t_end - times[i]) * direction >= 0.0)) {
       refuse("t_eval[" + std::to_string(i) + "]", times[i],

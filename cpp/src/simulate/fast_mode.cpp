@@ -7,7 +7,6 @@
 #include "arithmetic/eigenvalues.hpp"
 #include "dynamics/jacobian.hpp"
 #include "pendcore/equations.hpp"
-#include "scene/effects_of_scene.hpp"
 
 namespace pendcore {
 namespace {

@@ -43,7 +43,7 @@ bool Impacts::bounce_in_turn(double t, double* y, bool begins) {
   const bool is_plastic = modes_.changes().may_be_rounding();
   const double rounding = epsilon * joints_.fastest_strike(y, qd);
   bool loses_order = false;
-  if (!(std::abs(t - order_.last_impact) <= modes_.shortest_moment(t))) {
+  if (!(std::abs(t - order_.last_impact) <= joints_.shortest_moment(t))) {
     std::ranges::fill(order_.struck, 0);
   }
   order_.last_impact = t;
@@ -101,7 +101,7 @@ bool Impacts::capture(double t, const double* y) {
   bool any = false;
   std::vector<double> qdd(n_);
   accelerations_in_force(equations_, t, y, qd, qdd.data());
-  const double shortest = modes_.shortest_moment(t);
+  const double shortest = joints_.shortest_moment(t);
   for (int j = 0; j < n_; ++j) {
     const Side touched = joints_.contact(j, y);
     const auto side = static_cast<double>(touched);

@@ -9,6 +9,7 @@
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
 #include "pendcore/effects/lock.hpp"
+#include "pendcore/parameters.hpp"
 #include "scene/degrees.hpp"
 #include "scene/effects_of_scene.hpp"
 #include "scene/singular.hpp"
@@ -20,10 +21,7 @@ namespace {
 
 void check_numbers(const char* name, std::span<const double> values, std::size_t n,
                    const char* unit) {
-  if (values.size() != n) {
-    throw std::invalid_argument(std::string(name) + ": has " + std::to_string(values.size()) +
-                                " numbers: must have " + std::to_string(n) + ", one for each link");
-  }
+  require_size(name, values, n, ", one for each link");
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(values[i])) {
       refuse(std::string(name) + "[" + std::to_string(i) + "]", values[i], unit);
@@ -62,6 +60,24 @@ void check_locks_of_start(const Scene& scene, std::span<const double> q0) {
   if (!reason.empty()) throw std::invalid_argument("q0: with joints locked as it says: " + reason);
 }
 
+/// Checks that every number of the scene is as it was, where that is known.
+void check_unchanged(const Scene& scene, const Scene& before) {
+  if (before.links.empty()) return;
+  const std::vector<NamedNumber> now = parameters(scene);
+  const std::vector<NamedNumber> known = parameters(before);
+  const auto [one, other] =
+      std::ranges::mismatch(now, known, [](const NamedNumber& a, const NamedNumber& b) {
+        return a.name == b.name && a.value == b.value;
+      });
+  if (one == now.end() && other == known.end()) return;
+  const std::string rule = ": must be the scene of the solution";
+  if (one == now.end() || other == known.end() || one->name != other->name) {
+    throw std::invalid_argument("scene: has other effects than the solution" + rule);
+  }
+  throw std::invalid_argument("scene: " + one->name + " = " + text(one->value) +
+                              ", and the solution has " + text(other->value) + rule);
+}
+
 }  // namespace
 
 void check_start(const Scene& scene, std::span<const double> q0, std::span<const double> qd0,
@@ -76,6 +92,46 @@ void check_start(const Scene& scene, std::span<const double> q0, std::span<const
   }
   check_effects_at_start(scene, q0, qd0, t0, t_end);
   check_locks_of_start(scene, q0);
+}
+
+void check_continuation(const Scene& scene, const Solution& solution, double t_end,
+                        const std::vector<double>& t_eval) {
+  if (solution.resumable == nullptr) {
+    throw std::invalid_argument("solution: is empty: must be what simulate() or resume() returned");
+  }
+  if (scene.links.size() != static_cast<std::size_t>(solution.n)) {
+    throw std::invalid_argument("scene: has " + std::to_string(scene.links.size()) +
+                                " links, and the solution has " + std::to_string(solution.n) +
+                                ": must be the scene of the solution");
+  }
+  check_unchanged(scene, solution.scene);
+  const double reached = solution.t_reached;
+  // A run of no length has no direction yet: it takes the direction of its continuation.
+  const bool has_length = solution.t_end != solution.t0;
+  const double span = (has_length ? solution.t_end : t_end) - solution.t0;
+  auto before = [span](double a, double b) { return span < 0.0 ? b < a : span > 0.0 && a < b; };
+  const std::string beyond = span < 0.0 ? "before " : "beyond ";
+  const std::string way = span < 0.0 ? " s: this run goes back in time" : " s";
+  if (!std::isfinite(t_end) || before(t_end, reached)) {
+    refuse("t_end", t_end,
+           "finite and at or " + beyond + "the end reached, " + text(reached) + way);
+  }
+  const std::vector<double>& asked = solution.options.t_eval;
+  if (!asked.empty() && before(t_end, asked.back())) {
+    refuse("t_end", t_end,
+           "at or " + beyond + "the last time asked for, " + text(asked.back()) + way);
+  }
+  if (t_eval.empty()) return;
+  if (asked.empty()) {
+    throw std::invalid_argument(
+        "t_eval: this run was not asked for times, and keeps what it kept so far: leave t_eval "
+        "out");
+  }
+  check_times(t_eval, reached, t_end);
+  if (!before(asked.back(), t_eval.front())) {
+    refuse("t_eval[0]", t_eval.front(),
+           beyond + "the last time asked for so far, " + text(asked.back()) + way);
+  }
 }
 
 bool is_outside_table(const EffectBehaviour& effect, double t, bool forward) {

@@ -1,5 +1,5 @@
 /// \file
-/// The conditions that the start and the interval of a run must satisfy.
+/// The conditions that the start and the interval of a run must satisfy, and its continuation.
 #pragma once
 
 #include <span>
@@ -17,6 +17,10 @@ namespace pendcore {
 /// the past is not unique.
 void check_start(const Scene& scene, std::span<const double> q0, std::span<const double> qd0,
                  double t0, double t_end);
+/// Checks that a run is continued with its own scene from where it ended, to times that it has not
+/// been asked for.
+void check_continuation(const Scene& scene, const Solution& solution, double t_end,
+                        const std::vector<double>& t_eval);
 /// Warnings of what is possible in a run but hardly intended, a sentence each: a start that looks
 /// like degrees, a table that ends before the run does.
 std::vector<std::string> run_warnings(const Scene& scene, std::span<const double> q0, double t0,

@@ -80,11 +80,9 @@ double JointGuard::value(const double* y, int n) const {
 }
 
 double JointGuard::rounding(const double* y, int n) const {
-  const auto size = [j = joint](const double* x) {
-    return std::abs(x[j]) + (j > 0 ? std::abs(x[j - 1]) : 0.0);
-  };
-  return last_bits_share * (std::abs(linear.offset) + std::abs(linear.on_phi) * size(y) +
-                            std::abs(linear.on_phid) * size(y + n));
+  return last_bits_share *
+         (std::abs(linear.offset) + std::abs(linear.on_phi) * size_of_relative(y, joint + 1) +
+          std::abs(linear.on_phid) * size_of_relative(y + n, joint + 1));
 }
 
 void JointGuard::polynomial(const double* rows, int degree, int dimension, int n,

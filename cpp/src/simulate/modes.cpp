@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arithmetic/epsilon.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
 #include "simulate/initial_state.hpp"
@@ -48,10 +47,6 @@ double Modes::next_time(double t) const {
     next_time_ = forward_ ? std::min(next_time_, next) : std::max(next_time_, next);
   }
   return next_time_;
-}
-
-double Modes::shortest_moment(double t) const {
-  return 64.0 * epsilon * std::max(std::abs(t), 1.0 / joints_.natural_speed());
 }
 
 void Modes::choose_all(double t, const double* y) {
@@ -139,7 +134,7 @@ bool Modes::is_at_its_border(int joint, double t, const double* y) const {
   const double now = relative(qdd.data(), joint + 1);
   if (joints_.is_rounding(joint, now)) return true;
   if (now * direction > 0.0) return false;
-  const double moment = (forward_ ? 1.0 : -1.0) * shortest_moment(t);
+  const double moment = (forward_ ? 1.0 : -1.0) * joints_.shortest_moment(t);
   std::vector<double> soon(y, y + 2 * static_cast<std::ptrdiff_t>(n_));
   for (int i = 0; i < n_; ++i) {
     soon[i] += moment * y[n_ + i];

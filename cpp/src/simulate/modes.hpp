@@ -40,7 +40,6 @@ class Modes {
   bool is_over() const { return is_over_; }
   /// The next time after t at which a law changes, whatever the state; infinite if none.
   double next_time(double t) const;
-  double shortest_moment(double t) const;  ///< s, the shortest that time resolves
 
   /// Chooses everything anew, as at the start of a run or after a jump of the rates.
   void choose_all(double t, const double* y);

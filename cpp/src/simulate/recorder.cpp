@@ -98,14 +98,8 @@ void Recorder::state_settled(double t, const double* after) {
   std::copy_n(after, dimension_, solution_.states.end() - static_cast<std::ptrdiff_t>(dimension_));
 }
 
-Recorder::Kept Recorder::kept() const {
+Solution::Kept Recorder::kept() const {
   return {solution_.t.size(), solution_.dense.h.size(), solution_.found.size()};
-}
-
-void Recorder::mark_resumable(const Kept& kept) {
-  solution_.resumable_t = kept.t;
-  solution_.resumable_steps = kept.steps;
-  solution_.resumable_found = kept.found;
 }
 
 /// Keeps the states at the times asked for that lie within a step, before t_end.

@@ -24,8 +24,8 @@ class Recorder final : public Observer {
                         double t_new) override;
   void state_jumped(double t, const double* before, const double* after) override;
   void state_settled(double t, const double* after) override;
-  void restarts_here() override { mark_resumable(kept()); }
-  void restarts_at_step() override { mark_resumable(at_step_start_); }
+  void restarts_here() override { solution_.resumable_kept = kept(); }
+  void restarts_at_step() override { solution_.resumable_kept = at_step_start_; }
   bool may_end() const override { return may_throw_ || (finder_ && finder_->may_end()); }
   void step_begins() override { at_step_start_ = kept(); }
   bool has_ended() const override { return finder_ && finder_->ended_by() >= 0; }
@@ -34,14 +34,8 @@ class Recorder final : public Observer {
   int ended_by() const { return finder_ ? finder_->ended_by() : -1; }
 
  private:
-  struct Kept {
-    std::size_t t, steps, found;
-  };
   void interpolate(StepOutput& output, double h);  ///< sets polynomial_
-  Kept kept() const;
-  /// Notes that a run which never stopped would have kept this much, too: a continued run goes on
-  /// after it.
-  void mark_resumable(const Kept& kept);
+  Solution::Kept kept() const;
   void sample_before(StepOutput& output, const TwoDouble& t_old, double h, double t_end);
   bool is_asked_for(double t) const;
   double* append(double t);  ///< returns memory for the state at t
@@ -51,7 +45,7 @@ class Recorder final : public Observer {
   bool watch_asks_for_polynomials_;
   std::optional<EventFinder> finder_;
   bool may_throw_;  ///< whether there are users' functions
-  Kept at_step_start_{};
+  Solution::Kept at_step_start_;
   bool keeps_polynomials_;
   bool keeps_steps_;
   std::size_t dimension_;

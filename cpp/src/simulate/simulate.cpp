@@ -15,7 +15,6 @@
 #include "integrate/loop/run_limits.hpp"
 #include "pendcore/solution.hpp"
 #include "simulate/checked_options.hpp"
-#include "simulate/continuation.hpp"
 #include "simulate/ending_message.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/method_choice.hpp"
@@ -240,15 +239,16 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
   }
   std::vector<long long> passed_events(options.events.size());
   for (const FoundEvent& one : longer.found) ++passed_events[one.event];
-  longer.found.resize(longer.resumable_found);
+  const Solution::Kept kept = longer.resumable_kept;
+  longer.found.resize(kept.found);
   const auto dimension = static_cast<std::size_t>(longer.dimension);
   const auto degree = static_cast<std::size_t>(longer.dense.degree);
-  longer.t.resize(longer.resumable_t);
-  longer.states.resize(longer.resumable_t * dimension);
-  longer.dense.start.resize(longer.resumable_steps);
-  longer.dense.start_low.resize(longer.resumable_steps);
-  longer.dense.h.resize(longer.resumable_steps);
-  longer.dense.coefficients.resize(longer.resumable_steps * (degree + 1) * dimension);
+  longer.t.resize(kept.t);
+  longer.states.resize(kept.t * dimension);
+  longer.dense.start.resize(kept.steps);
+  longer.dense.start_low.resize(kept.steps);
+  longer.dense.h.resize(kept.steps);
+  longer.dense.coefficients.resize(kept.steps * (degree + 1) * dimension);
   Limits limits = limits_of(options, t_end);
   limits.monitor = monitor;
   // If the end is the same, the run repeats what it did since the resumable position. That is not

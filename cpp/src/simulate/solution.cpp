@@ -6,7 +6,6 @@
 
 #include "arithmetic/bits.hpp"
 #include "arithmetic/floating_point_environment.hpp"
-#include "arithmetic/pack.hpp"
 #include "integrate/horner.hpp"
 #include "integrate/taylor/taylor_step.hpp"
 #include "pendcore/methods.hpp"

@@ -125,21 +125,16 @@ std::unique_ptr<Stepper> stepper_of(const Wanted& wanted) {
   }
 }
 
-template <const auto&... tables>
-std::unique_ptr<Stepper> stepper_of(MethodList<tables...>, std::string_view name,
-                                    const Wanted& wanted) {
-  std::unique_ptr<Stepper> stepper;
-  ((tables.info.name == name ? void(stepper = stepper_of<tables>(wanted)) : void()), ...);
-  return stepper;
-}
-
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, const EquationsOfMotion& equations,
                                       std::string_view method, bool ledger, bool compensated) {
   const bool keeps_ledger = ledger && !accounts_of(scene).empty();
-  return stepper_of(Methods{}, find_method(method).name,
-                    {scene, equations, keeps_ledger, compensated});
+  const Wanted wanted{scene, equations, keeps_ledger, compensated};
+  std::unique_ptr<Stepper> stepper;
+  Methods::with(find_method(method).name,
+                [&]<const auto & table>() { stepper = stepper_of<table>(wanted); });
+  return stepper;
 }
 
 std::unique_ptr<Stepper> make_stepper(const Scene& scene, std::string_view method) {

@@ -107,7 +107,6 @@ bool Switching::begin(double t, double* y, bool forward) {
   return strikes;
 }
 
-/// Collects the guards after modes and holds have changed.
 void Switching::collect_guards(const double* y) {
   guards_ = joint_guards(equations_, modes_.changes(), y);
   linear_guards_ = static_cast<int>(std::ranges::count_if(guards_, &JointGuard::is_linear));

@@ -1,6 +1,5 @@
 // Taylor series of every form of the equations of motion that has them.
 #include <stdexcept>
-#include <string>
 
 #include "dynamics/equations_of_motion.hpp"
 #include "dynamics/series/few_links_series.hpp"
@@ -46,11 +45,8 @@ std::unique_ptr<Stepper> make_taylor_stepper(const Scene& scene, const Equations
     auto rows = std::dynamic_pointer_cast<const EffectsInRows<Pack<4>>>(effects);
     return of(FewLinksSeries(scene, std::move(rows)));
   }
-  switch (scene.links.size()) {
-    case 1: return of(chain.template operator()<double>());
-    case 2: return of(chain.template operator()<Pair>());
-    default: return of(chain.template operator()<Pack<4>>());
-  }
+  return with_row_for(scene.links.size(),
+                      [&]<class Row>() { return of(chain.template operator()<Row>()); });
 }
 
 }  // namespace pendcore

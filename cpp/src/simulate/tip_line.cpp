@@ -64,7 +64,14 @@ TipLine::TipLine(const Scene& scene, const events::TipLine& line)
 
 double TipLine::at(double t, const double* q) {
   sine_cosine(q, static_cast<long long>(sines_.size()), sines_.data(), cosines_.data());
-  return of_directions(t);
+  const PivotMotion pivot = pivot_motion(scene_, t);
+  double x = pivot.position[0] - line_.point[0];
+  double y = pivot.position[1] - line_.point[1];
+  for (std::size_t i = 0; i < sines_.size(); ++i) {
+    x = fma(scene_.links[i].length, cosines_[i], x);
+    y = fma(scene_.links[i].length, sines_[i], y);
+  }
+  return line_.normal[0] * x + line_.normal[1] * y;
 }
 
 double TipLine::rounding(double t, const double* q) const {
@@ -77,17 +84,6 @@ double TipLine::rounding(double t, const double* q) const {
     lengths += scene_.links[i].length * (1.0 + std::abs(q[i]));
   }
   return last_bits_share * size_of_normal_ * lengths;
-}
-
-double TipLine::of_directions(double t) {
-  const PivotMotion pivot = pivot_motion(scene_, t);
-  double x = pivot.position[0] - line_.point[0];
-  double y = pivot.position[1] - line_.point[1];
-  for (std::size_t i = 0; i < sines_.size(); ++i) {
-    x = fma(scene_.links[i].length, cosines_[i], x);
-    y = fma(scene_.links[i].length, sines_[i], y);
-  }
-  return line_.normal[0] * x + line_.normal[1] * y;
 }
 
 TipLine::Point TipLine::along(double theta) {

@@ -12,10 +12,8 @@
 /// except where g touches zero. Cost: a sine and a cosine of each link at each point.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "arithmetic/two_double.hpp"
 #include "integrate/events/root.hpp"
 #include "pendcore/events.hpp"
 #include "pendcore/scene.hpp"
@@ -44,7 +42,6 @@ class TipLine {
     double slope;
   };
   Point along(double theta);
-  double of_directions(double t);  ///< g from the current sines and cosines
   void bound_curvature();
   void search(double low, double high, int depth);
 

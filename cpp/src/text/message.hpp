@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace pendcore {
 
@@ -23,11 +24,12 @@ inline std::string text(double x) {
   throw std::invalid_argument(field + " = " + text(value) + ": must be " + range);
 }
 
-/// Throws std::invalid_argument unless there are `size` numbers.
-inline void require_size(const char* name, std::span<const double> numbers, std::size_t size) {
+/// Throws std::invalid_argument unless there are `size` numbers; `why` ends the message.
+inline void require_size(std::string_view name, std::span<const double> numbers, std::size_t size,
+                         const char* why = "") {
   if (numbers.size() == size) return;
   throw std::invalid_argument(std::string(name) + ": has " + std::to_string(numbers.size()) +
-                              " numbers: must have " + std::to_string(size));
+                              " numbers: must have " + std::to_string(size) + why);
 }
 
 }  // namespace pendcore

@@ -38,7 +38,6 @@ struct DrivenPivot {
       parameter(&DrivenPivot::y,
                 {.name = "y", .symbol = "y_0", .unit = "m", .sentence = "motion downward"}),
       parameter(&DrivenPivot::spline, {.name = "spline",
-                                       .symbol = "",
                                        .unit = "m",
                                        .sentence = "motion along both axes, through given points"}),
   };

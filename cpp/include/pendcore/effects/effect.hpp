@@ -83,12 +83,10 @@ struct EffectInfo {
 inline constexpr ParameterInfo joint_number{
     .name = "joint",
     .symbol = "j",
-    .unit = "",
     .sentence = "the joint at which it acts, counted from 1",
     .required = true};
 inline constexpr ParameterInfo link_number{.name = "link",
                                            .symbol = "i",
-                                           .unit = "",
                                            .sentence = "the link on which it acts, counted from 1",
                                            .required = true};
 

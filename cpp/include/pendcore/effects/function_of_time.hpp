@@ -63,8 +63,6 @@ struct Table {
                                  .sentence = "torque at those times",
                                  .required = true}),
       parameter(&Table::hold, {.name = "hold",
-                               .symbol = "",
-                               .unit = "",
                                .sentence = "whether each torque holds until the next time, the "
                                            "last one for no time"}),
   };

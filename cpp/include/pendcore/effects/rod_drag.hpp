@@ -49,10 +49,9 @@ struct RodDrag {
                                         .unit = "kg/m^3",
                                         .sentence = "density of the air or another fluid",
                                         .range = Range::not_negative}),
-      parameter(&RodDrag::wind, {.name = "wind",
-                                 .symbol = "",
-                                 .unit = "m/s",
-                                 .sentence = "velocity of the air, x right and y down"}),
+      parameter(
+          &RodDrag::wind,
+          {.name = "wind", .unit = "m/s", .sentence = "velocity of the air, x right and y down"}),
   };
 };
 

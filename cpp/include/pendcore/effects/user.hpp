@@ -50,16 +50,12 @@ struct CompiledUser {
       parameter(&CompiledUser::address,
                 {.name = "address",
                  .symbol = "f",
-                 .unit = "",
                  .sentence = "address of void f(double t, int n, const double* q, const double* "
                              "qd, double* Q, void* data)",
                  .required = true}),
-      parameter(&CompiledUser::data, {.name = "data",
-                                      .symbol = "",
-                                      .unit = "",
-                                      .sentence = "passed to the function unchanged"}),
+      parameter(&CompiledUser::data,
+                {.name = "data", .sentence = "passed to the function unchanged"}),
       parameter(&CompiledUser::breaks, {.name = "breaks",
-                                        .symbol = "",
                                         .unit = "s",
                                         .sentence = "times at which the forces may jump, "
                                                     "increasing"}),

@@ -78,7 +78,7 @@ void HeldJoints::release(EffectsOfRun& effects, int joint, int direction) {
 /// it.
 Side HeldJoints::contact(int joint, const double* q) const {
   const double phi = relative(q, joint + 1);
-  const double size = std::abs(q[joint]) + (joint > 0 ? std::abs(q[joint - 1]) : 0.0);
+  const double size = size_of_relative(q, joint + 1);
   auto is_at = [&](double end, double distance) {
     return std::isfinite(end) && distance <= last_bits_share * (size + std::abs(end));
   };
@@ -95,7 +95,7 @@ std::vector<double> HeldJoints::without_rounding(const double* qd) const {
     const JointSupport& support = supports_[j];
     const bool may_rest = support.is_locked || !support.friction_effects.empty() ||
                           std::isfinite(support.lower.angle) || std::isfinite(support.upper.angle);
-    const double size = std::abs(qd[j]) + (j > 0 ? std::abs(qd[j - 1]) : 0.0) + natural_speed_;
+    const double size = size_of_relative(qd, j + 1) + natural_speed_;
     if (may_rest && std::abs(relative(qd, j + 1)) <= last_bits_share * size) {
       set_relative(rates.data(), j + 1, 0.0);
     }
@@ -188,10 +188,8 @@ void HeldJoints::torques(const EquationsOfMotion& equations, double t, const dou
   double size = 0.0;  // the laws' terms count for an eighth: they carry few roundings
   for (int j = 0; j < n_; ++j) {
     const JointSupport& joint = supports_[j];
-    const double before = j > 0 ? std::abs(q[j - 1]) : 0.0;
-    const double rate_before = j > 0 ? std::abs(qd[j - 1]) : 0.0;
-    size += 0.125 * (joint.stiffness * (std::abs(q[j]) + before) +
-                     joint.damping * (std::abs(qd[j]) + rate_before) + joint.torque);
+    size += 0.125 * (joint.stiffness * size_of_relative(q, j + 1) +
+                     joint.damping * size_of_relative(qd, j + 1) + joint.torque);
   }
   for (int i = n_ - 1; i >= 0; --i) {
     const auto row = forces_.mass.row(i);

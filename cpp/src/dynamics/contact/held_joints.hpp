@@ -19,6 +19,7 @@
 /// sides and O(n^2) for the torques.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -70,6 +71,10 @@ class HeldJoints {
   /// The inertia, kg m^2, of a link and everything beyond it about the joint: M_ii.
   double inertia(int joint) const { return forces_.inertia.links[joint].diagonal; }
   double natural_speed() const { return natural_speed_; }  ///< the highest of all joints, rad/s
+  /// s, the shortest that time resolves at t
+  double shortest_moment(double t) const {
+    return 64.0 * epsilon * std::max(std::abs(t), 1.0 / natural_speed_);
+  }
 
   /// Locks a joint at an angle from now on, and sets this angle in the state.
   void lock(int joint, double angle, double* q);

@@ -9,25 +9,18 @@
 namespace pendcore {
 namespace {
 
-/// Calls visit(entry, at, loads) for each law of the effects, if the rows of the laws are of type
-/// Row. Returns whether they are.
-template <class Row, class Visit>
-bool visit_rows(const EffectsOfRun& effects, double t, const LinkMemory& links, Visit& visit) {
-  const auto* acting = dynamic_cast<const EffectsInRows<Row>*>(&effects);
-  if (acting == nullptr) return false;
-  for (const auto& entry : acting->entries) {
-    const RowInArrays<Row> at(links.arrays(), t, entry.row);
-    RowLoads<Row> loads;
-    EffectsInRows<Row>::add(entry, at, loads);
-    visit(entry, at, loads);
-  }
-  return true;
-}
-
+/// Calls visit(entry, at, loads) for each law of the effects.
 template <class Visit>
-void for_each_law(const EffectsOfRun& effects, double t, const LinkMemory& links, Visit visit) {
-  visit_rows<double>(effects, t, links, visit) || visit_rows<Pair>(effects, t, links, visit) ||
-      visit_rows<Pack<4>>(effects, t, links, visit);
+void for_each_law(const EffectsOfRun& effects, double t, const LinkMemory& links,
+                  const Visit& visit) {
+  with_row_for(effects.held.size(), [&]<class Row>() {
+    for (const auto& entry : dynamic_cast<const EffectsInRows<Row>&>(effects).entries) {
+      const RowInArrays<Row> at(links.arrays(), t, entry.row);
+      RowLoads<Row> loads;
+      EffectsInRows<Row>::add(entry, at, loads);
+      visit(entry, at, loads);
+    }
+  });
 }
 
 template <class Powers>

@@ -39,7 +39,6 @@ class LinkMemory {
 class Ledger {
  public:
   Ledger(const Scene& scene, std::shared_ptr<EffectsOfRun> effects);
-  std::size_t size() const { return accounts_.size(); }
   void powers(double t, const double* q, const double* qd, const double* qdd, double* result);
 
  private:

@@ -74,31 +74,6 @@ double search_step(const double* c, int degree) {
   return search(c, degree, b, 0.0, 1.0, 0);
 }
 
-}  // namespace
-
-/// b_i = sum_{k <= i} C(i, k)/C(degree, k) c_k, by Pascal's triangle.
-void bernstein_form(const double* coefficients, int degree, double* bernstein) {
-  for (int k = 0; k <= degree; ++k) bernstein[k] = inverse_binomials[degree][k] * coefficients[k];
-  for (int k = 1; k <= degree; ++k) {
-    for (int i = degree; i >= k; --i) bernstein[i] += bernstein[i - 1];
-  }
-}
-
-double first_negative(const double* coefficients, int degree) {
-  double least = coefficients[0];  // a lower bound
-  for (int k = 1; k <= degree; ++k) least += std::min(coefficients[k], 0.0);
-  if (least > 0.0) return none;
-  double largest = 0.0;
-  for (int k = 1; k <= degree; ++k) largest = std::max(largest, std::abs(coefficients[k]));
-  const bool from_zero = coefficients[0] <= 1e-13 * largest;
-  const double* const c = from_zero ? coefficients + 1 : coefficients;  // p/theta has p's signs
-  const int rest = from_zero ? degree - 1 : degree;
-  if (!(largest > 0.0)) return coefficients[0] < 0.0 ? 0.0 : none;
-  return rest < static_cast<int>(small) ? search_step<small>(c, rest) : search_step<large>(c, rest);
-}
-
-namespace {
-
 /// Finds the turning points of a polynomial on low .. high from the Bernstein form b of its
 /// derivative. Turning points that are closer together than 2^-30 of the step differ by less than
 /// rounding, and one of them stands for all.
@@ -153,6 +128,27 @@ void find_turning_points(const double* coefficients, int degree, const Bernstein
 }
 
 }  // namespace
+
+/// b_i = sum_{k <= i} C(i, k)/C(degree, k) c_k, by Pascal's triangle.
+void bernstein_form(const double* coefficients, int degree, double* bernstein) {
+  for (int k = 0; k <= degree; ++k) bernstein[k] = inverse_binomials[degree][k] * coefficients[k];
+  for (int k = 1; k <= degree; ++k) {
+    for (int i = degree; i >= k; --i) bernstein[i] += bernstein[i - 1];
+  }
+}
+
+double first_negative(const double* coefficients, int degree) {
+  double least = coefficients[0];  // a lower bound
+  for (int k = 1; k <= degree; ++k) least += std::min(coefficients[k], 0.0);
+  if (least > 0.0) return none;
+  double largest = 0.0;
+  for (int k = 1; k <= degree; ++k) largest = std::max(largest, std::abs(coefficients[k]));
+  const bool from_zero = coefficients[0] <= 1e-13 * largest;
+  const double* const c = from_zero ? coefficients + 1 : coefficients;  // p/theta has p's signs
+  const int rest = from_zero ? degree - 1 : degree;
+  if (!(largest > 0.0)) return coefficients[0] < 0.0 ? 0.0 : none;
+  return rest < static_cast<int>(small) ? search_step<small>(c, rest) : search_step<large>(c, rest);
+}
 
 void find_turning_points(const double* coefficients, int degree, std::vector<TurningPoint>& found) {
   Bernstein<large> b{};

@@ -15,7 +15,6 @@ struct FirstStep {
   bool is_bounded;  ///< the Euler step was cut to the time that is left
 };
 
-/// The first step from the stepper's state at time t towards t_end.
 FirstStep first_step(Stepper& stepper, double t, double t_end, double max_step, const double* rtol,
                      const double* atol);
 

@@ -173,7 +173,6 @@ Crossing Guards::where_slope_allows(Crossing crossing, double t, double h, int d
   return crossing;
 }
 
-/// The value of guard k at state_.
 double Guards::value_at(int k, double t) {
   const int other = k - discontinuities_.linear_guards();
   if (other < 0) return discontinuities_.guard(k, state_.data());

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arithmetic/epsilon.hpp"
 #include "integrate/loop/interruption.hpp"
 #include "integrate/loop/resume_point.hpp"
 #include "integrate/loop/run_limits.hpp"

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <exception>
-#include <functional>
 #include <limits>
 #include <vector>
 

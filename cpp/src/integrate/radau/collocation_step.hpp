@@ -22,8 +22,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <type_traits>
 
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/pack.hpp"

@@ -53,7 +53,6 @@ PENDCORE_INLINE Attempt attempt_collocation(CollocationStep<links>* step, double
   return {{s.squared_error, factor}};
 }
 
-/// Accepts the attempted step.
 template <int links>
 PENDCORE_INLINE void accept_collocation(CollocationStep<links>* step, double t_new) {
   constexpr double log2_smallest_error = -6.643856189774724;  // log2(1e-2)

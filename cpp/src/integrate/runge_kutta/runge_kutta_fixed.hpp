@@ -6,7 +6,6 @@
 #include <memory>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "integrate/horner.hpp"
 #include "integrate/runge_kutta/step.hpp"

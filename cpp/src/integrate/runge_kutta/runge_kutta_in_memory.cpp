@@ -152,14 +152,13 @@ class RungeKuttaInMemory final : public Stepper {
     memory_.blocks = size_ / width;
     memory_.error_blocks = 2 * row_ / width;
     memory_.count = 2.0 * n;
-    memory_.y = numbers_.data();
-    memory_.y_new = memory_.y + size_;
-    memory_.rtol = memory_.y_new + size_;
-    memory_.atol = memory_.rtol + size_;
-    memory_.k = memory_.atol + size_;
-    memory_.low = memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_;
-    memory_.low_new = memory_.low + size_;
-    rows_ = numbers_.data() + static_cast<std::ptrdiff_t>(rows) * size_;
+    double* at = numbers_.data();
+    for (double** one : {&memory_.y, &memory_.y_new, &memory_.rtol, &memory_.atol, &memory_.low,
+                         &memory_.low_new, &memory_.k}) {
+      *one = at;
+      at += size_;
+    }
+    rows_ = memory_.k + static_cast<std::ptrdiff_t>(all_stages) * size_;
     for (int i = 0; i < size_; ++i) memory_.atol[i] = 1.0;  // places without a component
   }
 
@@ -296,43 +295,21 @@ class RungeKuttaInMemory final : public Stepper {
                        double*) = fastest<&interpolant_in_memory<method, Block>, sets>();
 };
 
-template <const auto& method>
-std::unique_ptr<Stepper> stepper_of(std::unique_ptr<GeneralSystem> system, int n,
-                                    bool compensated) {
-  switch (system->row) {
-    case 1:
-      return std::make_unique<RungeKuttaInMemory<method, double>>(std::move(system), n,
-                                                                  compensated);
-    case 2:
-      return std::make_unique<RungeKuttaInMemory<method, Pack<2>>>(std::move(system), n,
-                                                                   compensated);
-    default:
-      return std::make_unique<RungeKuttaInMemory<method, Pack<4>>>(std::move(system), n,
-                                                                   compensated);
-  }
-}
-
-using Maker = std::unique_ptr<Stepper> (*)(std::unique_ptr<GeneralSystem>, int, bool);
-
-template <const auto& method>
-constexpr Maker maker_of() {
-  if constexpr (method.info.kind == MethodKind::explicit_one) return &stepper_of<method>;
-  return nullptr;
-}
-
-template <const auto&... methods>
-Maker maker_of(MethodList<methods...>, std::string_view name) {
-  Maker maker = nullptr;
-  ((methods.info.name == name ? void(maker = maker_of<methods>()) : void()), ...);
-  return maker;
-}
-
 }  // namespace
 
 std::unique_ptr<Stepper> runge_kutta_in_memory(std::string_view method,
                                                std::unique_ptr<GeneralSystem> system, int n,
                                                bool compensated) {
-  return maker_of(Methods{}, method)(std::move(system), n, compensated);
+  std::unique_ptr<Stepper> made;
+  Methods::with(method, [&]<const auto & table>() {
+    if constexpr (table.info.kind == MethodKind::explicit_one) {
+      with_row_for(system->row, [&]<class Block>() {
+        made =
+            std::make_unique<RungeKuttaInMemory<table, Block>>(std::move(system), n, compensated);
+      });
+    }
+  });
+  return made;
 }
 
 }  // namespace pendcore

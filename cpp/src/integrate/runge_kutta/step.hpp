@@ -18,7 +18,6 @@
 
 #include "arithmetic/power.hpp"
 #include "arithmetic/row_of_links.hpp"
-#include "arithmetic/two_double.hpp"
 #include "integrate/loop/attempt.hpp"
 #include "integrate/loop/step_control.hpp"
 #include "integrate/runge_kutta/tableau.hpp"

@@ -35,21 +35,19 @@ constexpr std::array<std::array<int, degree>, degree> powers() {
 template <int stage_count, int interpolant_degree, int dense_stage_count = 0>
 struct Tableau {
   static constexpr int stages = stage_count;
-  static constexpr int dense_stages = dense_stage_count;  ///< additional, only for the dense output
-  static constexpr int all_stages = stage_count + dense_stage_count;
+  static constexpr int all_stages = stage_count + dense_stage_count;  ///< with the dense output's
   static constexpr int degree = interpolant_degree;
-  using Row = std::array<Fraction, stage_count>;
-  using LongRow = std::array<Fraction, all_stages>;
+  using Row = std::array<Fraction, all_stages>;
 
   MethodInfo info;
   bool first_same_as_last;   ///< the last stage is the first of the next step
   bool written_out = false;  ///< stage by stage for all but long equations, not only short ones
-  LongRow c;
-  std::array<LongRow, all_stages> a;
+  Row c;
+  std::array<Row, all_stages> a;
   Row b;
   Row e;       ///< b minus the weights of the embedded method
   Row d = {};  ///< b minus the weights of the second, if there is one
-  std::array<LongRow, interpolant_degree> interpolant;  ///< D
+  std::array<Row, interpolant_degree> interpolant;  ///< D
   std::array<std::array<int, interpolant_degree>, interpolant_degree> basis =
       powers<interpolant_degree>();  ///< F
 };

@@ -41,11 +41,8 @@ class Taylor final : public Stepper {
     memory_.blocks = size_ / width;
     memory_.log2_count = approximate_log2(static_cast<double>(controlled()));
   }
-  Taylor(const Taylor&) = delete;
+  Taylor(const Taylor&) = delete;  // the memory points to its own numbers
   Taylor& operator=(const Taylor&) = delete;
-  Taylor(Taylor&&) = delete;
-  Taylor& operator=(Taylor&&) = delete;
-  ~Taylor() override = default;
 
   const MethodInfo& info() const override { return taylor.info; }
   int dimension() const override { return controlled() + static_cast<int>(quadratures_.size()); }
