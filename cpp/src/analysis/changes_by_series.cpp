@@ -17,7 +17,7 @@ namespace pendcore {
 namespace {
 
 using Slopes = decltype(AlongNames::slope);
-constexpr int lowest_order = 6;
+constexpr int lowest_order = 8;  // of which eight are looked at
 constexpr int usual_order = 14;
 
 /// The series of all other scenes that have one.
@@ -30,27 +30,27 @@ PENDCORE_INLINE void expand_series(const Series* series, double t, const AlongNa
   series->expand(t, y, sigma, order, rows);
 }
 
-/// Of the slopes of a series at x: the largest of orders 0 and 1, of the last two orders, and of
-/// those four orders before.
+/// Of the slopes of a series at x: the largest of orders 0 and 1, of the last four orders, and of
+/// the four before. By symmetry three of four may vanish.
 struct Sizes {
   double first[names_at_once], last[names_at_once], before[names_at_once];
 };
 PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, double x,
                                 Sizes* sizes) {
-  double power = 1.0;  // x^(order - 5)
-  for (int k = 5; k < order; ++k) power *= x;
-  const auto largest = [&](int first_order, double at) __attribute__((always_inline)) {
+  double power = 1.0;  // x^(order - 7)
+  for (int k = 7; k < order; ++k) power *= x;
+  const auto largest = [&](int begin, int count, double at) __attribute__((always_inline)) {
     Slopes found{};
-    for (int k = first_order; k < first_order + 2; ++k, at *= x) {
+    for (int k = begin; k < begin + count; ++k, at *= x) {
       for (int i = 0; i < size; ++i) {
         found = larger(found, absolute(Slopes(at * rows[k * size + i].slope)));
       }
     }
     return found;
   };
-  store(sizes->first, largest(0, 1.0));
-  store(sizes->before, largest(order - 5, power));
-  store(sizes->last, largest(order - 1, power * (x * x) * (x * x)));
+  store(sizes->first, largest(0, 2, 1.0));
+  store(sizes->before, largest(order - 7, 4, power));
+  store(sizes->last, largest(order - 3, 4, power * (x * x) * (x * x)));
 }
 
 PENDCORE_INLINE void sum_slopes(const AlongNames* rows, int size, int order, double x,
@@ -171,17 +171,22 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
   Convergence found{.is_there = true, .wanted_order = lowest_order};
   for (int k = 0; k < part.count; ++k) {
     if (!changes.col(part.first + k).allFinite()) continue;
-    const double allowed = tolerance * sizes.first[k];
-    const double last = std::max(sizes.last[k], 0.1 * epsilon * sizes.first[k]);
-    const double squared_ratio = std::sqrt(last / sizes.before[k]);
-    double left_out = last * squared_ratio / (1.0 - squared_ratio);
-    if (sizes.first[k] == 0.0 && last == 0.0) continue;
-    if (!(squared_ratio < 0.7 && sizes.first[k] < largest_size)) return none;
+    const double size = sizes.first[k];
+    if (sizes.last[k] <= 0.1 * epsilon * size && size < largest_size) continue;
+    const double ratio = sizes.last[k] / sizes.before[k];
+    if (!(ratio < 1.0 && size < largest_size)) return none;
+    if (ratio > 0.5) {
+      found = {.is_there = false, .wanted_order = std::max(found.wanted_order, order_ + 6)};
+      continue;
+    }
+    const double allowed = tolerance * size;
+    double left_out = sizes.last[k] * ratio / (1.0 - ratio);
     found.is_there &= left_out <= allowed;
+    const double of_two_orders = std::sqrt(ratio);
     int order = order_;
-    for (; left_out > safety * allowed; left_out *= squared_ratio) order += 2;
-    for (; order > lowest_order && left_out <= safety * squared_ratio * allowed; order -= 2) {
-      left_out /= squared_ratio;
+    for (; left_out > safety * allowed; left_out *= of_two_orders) order += 2;
+    for (; order > lowest_order && left_out <= safety * of_two_orders * allowed; order -= 2) {
+      left_out /= of_two_orders;
     }
     found.wanted_order = std::max(found.wanted_order, order);
   }

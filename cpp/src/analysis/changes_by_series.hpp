@@ -5,8 +5,8 @@
 /// The coefficients of a change are the slopes of the coefficients of the motion. So the series
 /// from the state and its changes at the start of a step has the changes anywhere in the step,
 /// whichever method made the step. Its order follows from how fast the slopes fall: with N the
-/// largest of the last two at the end of the step, M the largest of those four orders before, and
-/// r^4 = N/M, what is left out is taken as N r^2/(1 - r^2).
+/// largest of the last four at the end of the step, and M that of the four before, what is left out
+/// is taken as N (N/M)/(1 - N/M).
 ///
 /// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
 /// numbers. Cost: for each eight names, four to six times the series of two links, and some twelve
