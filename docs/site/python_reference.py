@@ -23,7 +23,9 @@ from pendcore import (
 
 GROUPS = {
     "Scenes": ["Scene", "Link", "Linearization", "Mobility", "Explanation"],
-    "Runs": ["simulate", "Solution", "Statistics", "RunError", "PendcoreWarning"],
+    "Runs": [
+        "simulate", "Solution", "Statistics", "EventSensitivities", "RunError", "PendcoreWarning",
+    ],
     "Many runs at once": ["ensemble", "Ensemble"],
     "What a run can be trusted for": [
         "Accuracy", "AccuracyError", "ErrorEstimate", "Defect", "LyapunovExponents", "lyapunov",

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from pendcore._api.files import load, read_case
     from pendcore._ensemble.ensemble import Ensemble
     from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
+    from pendcore._run.event_sensitivities import EventSensitivities
     from pendcore._scene.linearization import Linearization
     from pendcore.cost.accuracy_cost import AccuracyCost
     from pendcore.cost.horizon import horizon_work
@@ -70,6 +71,7 @@ _WHEN_ASKED_FOR = {
     "Defect": "pendcore._accuracy.defect",
     "Ensemble": "pendcore._ensemble.ensemble",
     "Equilibrium": "pendcore.orbits.equilibrium",
+    "EventSensitivities": "pendcore._run.event_sensitivities",
     "Explanation": "pendcore.explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
     "Linearization": "pendcore._scene.linearization",
@@ -116,6 +118,7 @@ __all__ = [
     "Ensemble",
     "Equilibrium",
     "ErrorEstimate",
+    "EventSensitivities",
     "Explanation",
     "HorizonWork",
     "LargestReaction",

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from pendcore._cases.case import Case
     from pendcore._horizon.lyapunov import LyapunovExponents
     from pendcore._run.energy_drift import EnergyDrift
+    from pendcore._run.event_sensitivities import EventSensitivities
     from pendcore.page.notebook import NotebookPage
     from pendcore.plotting.plot import What
 
@@ -517,6 +518,45 @@ class Solution:
         from pendcore._run.sensitivities import errors_of
 
         return errors_of(self)
+
+    def event_sensitivities(self) -> list[EventSensitivities]:
+        """Find how the times of events, and the states there, change with each name.
+
+        With S the sensitivities at a fixed time, f the rates of change of the state and g the
+        event's function, ``dt = -(g_y S + g_p) / (g_t + g_y f)`` and ``dy = S + f dt``. The run is
+        made again with its own steps, and keeps its bits.
+
+        Returns
+        -------
+        list of EventSensitivities
+            One for each event asked for, with ``t`` (k, m) and ``y`` (k, 2n, m) for the k times in
+            ``events`` and the m names of ``sensitivity_names``. NaN where an event has no
+            derivative, or one on each side: where it only touches zero (``direction`` 0), where the
+            state jumps or a law changes at that very time (an impact, a joint that comes to stick),
+            and where S has none.
+
+        Raises
+        ------
+        ValueError
+            If the run has no sensitivities, or looked for no events.
+
+        Notes
+        -----
+        A `pendcore.events.Function` is differentiated by central differences in t, q and qd, to
+        some ten digits where it is smooth; what else it depends on is taken as fixed.
+
+        Examples
+        --------
+        >>> turn = pc.events.RateZero(link=1)
+        >>> how = {"sensitivities": ["q0[1]", "gravity"], "events": [turn]}
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 3), 0.5, **how)
+        >>> sol.event_sensitivities()[0].t.round(3)  # two turns: s/rad, s^3/m
+        array([[-0.167, -0.061],
+               [-0.256, -0.126]])
+        """
+        from pendcore._run.event_sensitivities import sensitivities_at_events
+
+        return sensitivities_at_events(self)
 
     def lyapunov(
         self,

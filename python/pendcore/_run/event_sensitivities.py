@@ -1,0 +1,193 @@
+"""Derivatives of the times at which events are found, and of the states there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pendcore._messages.arguments import Floats
+from pendcore._run.sensitivities import derivatives_of
+from pendcore._run.solution import Solution
+from pendcore._scene.link import Link
+from pendcore._scene.scene import Scene
+from pendcore.effects import DrivenPivot
+from pendcore.events import Event, Found, Function, JointAngle, LinkAngle, RateZero, TipLine
+
+BESIDE = 1e-10
+"""The distance from an event to the times beside it, as a share of the mean step."""
+LAST_BITS = 8
+"""The least distance to them, in last bits of the time."""
+JUMP = 1e-6
+"""The share of the largest rate of change beyond which a difference across an event is a jump."""
+ROUNDING = 1e-12
+"""The share of its terms below which the slope of an event's function in time is rounding."""
+STEP = float(np.cbrt(np.finfo(float).eps))
+"""The steps of central differences, as a share of what is moved, or of 1 where that is less."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EventSensitivities:
+    """The derivatives of the times and the states of one event.
+
+    Attributes
+    ----------
+    t : ndarray, (k, m)
+        d(time)/d(name) of each of k times at which the event was found, for each of the m names of
+        ``sol.sensitivity_names``: s per unit of what is named.
+    y : ndarray, (k, 2n, m)
+        d(q, qd)/d(name) of the state at the event, whose time moves: rad and rad/s per unit.
+
+    Examples
+    --------
+    >>> bottom = pc.events.LinkAngle(1, np.pi / 2)
+    >>> how = {"sensitivities": ["gravity"], "events": [bottom]}
+    >>> sol = pc.simulate(pc.Scene.textbook(), (0, 2), 0.5, **how)
+    >>> (moved,) = sol.event_sensitivities()
+    >>> moved.t[:, 0].round(6)  # s^3/m
+    array([-0.033303, -0.09808 ])
+    >>> (-sol.events[0].t / (2 * 9.807)).round(6)  # from rest, times go as gravity^(-1/2)
+    array([-0.033303, -0.09808 ])
+    """
+
+    t: Floats
+    y: Floats
+
+
+def sensitivities_at_events(solution: Solution) -> list[EventSensitivities]:
+    """See `Solution.event_sensitivities`."""
+    if solution.sensitivities is None:
+        raise ValueError(
+            "the run has no sensitivities: simulate(..., sensitivities=[names]) finds them"
+        )
+    if not (asked := solution.events_asked_for()):
+        raise ValueError("the run looked for no events: simulate(..., events=[...]) finds them")
+    n, names = len(solution.scene.links), solution.sensitivity_names
+    along = _Along(solution)
+    results = []
+    for event, found in zip(asked, solution.events, strict=True):
+        by = np.full((len(found), 1 + 2 * n, len(names)), np.nan)
+        for k, one in enumerate(found):
+            if one.direction and one.y_before is None:
+                by[k] = _of_one(event, one, along)
+        results.append(EventSensitivities(by[:, 0], by[:, 1:]))
+    return results
+
+
+def _of_one(event: Event, one: Found, along: _Along) -> Floats:
+    """Return the derivatives of the time and the state, (1 + 2n, m); NaN where there are none."""
+    S, rates = along.at(one.t, one.y)
+    by_state, by_names, by_time = _slopes(event, one, along.scene, along.names)
+    terms = by_state * rates
+    along_the_run = by_time + terms.sum()
+    if abs(along_the_run) <= ROUNDING * (abs(by_time) + np.abs(terms).sum()):
+        return np.full((1 + len(S), len(along.names)), np.nan)
+    dt = -(by_state @ S + by_names) / along_the_run
+    return np.vstack([dt, S + np.outer(rates, dt)])
+
+
+class _Along:
+    """The run made again, with sensitivities at the times of its events and just beside them.
+
+    It is made with the steps that it had, and goes on for a few more where an event ended it.
+    """
+
+    def __init__(self, solution: Solution) -> None:
+        self.scene, self.names = solution.scene, solution.sensitivity_names
+        stats, (start, end) = solution.stats, solution.t_span
+        self.mean_step = abs(solution.t_reached - start) / max(stats.accepted, 1)
+        times = [t for found in solution.events for t in found.t.tolist()]
+        sides = [t for time in times for t in self.beside(time)]
+        inside = np.clip([start, *times, *sides], min(start, end), max(start, end))
+        grid = sorted(set(inside.tolist()), reverse=end < start)
+        watch, other = derivatives_of(
+            solution, self.names, t_eval=grid, store=None, events=(),
+            max_steps=stats.accepted + stats.rejected + 3,
+        )  # fmt: skip
+        rows = zip(watch.values, other.y.T, strict=True)
+        self.rows: dict[float, tuple[Floats, Floats]] = dict(zip(grid, rows, strict=False))
+
+    def beside(self, t: float) -> tuple[float, float]:
+        """Return a time just before t and one just after it."""
+        width = max(BESIDE * self.mean_step, LAST_BITS * float(np.spacing(abs(t))))
+        return t - width, t + width
+
+    def at(self, t: float, y: Floats) -> tuple[Floats, Floats]:
+        """Return sensitivities and rates of change at an event; NaN where a law changes there."""
+        rates = self.rates(t, y)
+        sides = [self.rates(s, self.rows[s][1]) for s in self.beside(t) if s in self.rows]
+        if len(sides) == 2 and np.abs(np.subtract(*sides)).max() > JUMP * np.abs(sides).max():
+            rates = np.full_like(rates, np.nan)
+        return self.rows[t][0], rates
+
+    def rates(self, t: float, y: Floats) -> Floats:
+        q, qd = np.split(y, 2)
+        return np.append(qd, self.scene.accelerations(t, q, qd))
+
+
+def _slopes(
+    event: Event, one: Found, scene: Scene, names: tuple[str, ...]
+) -> tuple[Floats, Floats, float]:
+    """Return the derivatives of an event's function by the state, (2n,), by the names and by t."""
+    n, none = len(scene.links), np.zeros(len(names))
+    by_state = np.zeros(2 * n)
+    match event:
+        case LinkAngle(link):
+            by_state[link - 1] = 1
+        case JointAngle(joint):
+            _set_relative(by_state[:n], joint)
+        case RateZero(joint=None, link=int(link)):
+            by_state[n + link - 1] = 1
+        case RateZero(joint=int(joint)):
+            _set_relative(by_state[n:], joint)
+        case TipLine(normal=normal):
+            return _of_the_line(np.array(normal), one, scene, names)
+        case Function(f):
+            slope = _differences(lambda x: float(f(x[0], x[1 : 1 + n], x[1 + n :])), one)
+            return slope[1:], none, float(slope[0])
+    return by_state, none, 0.0
+
+
+def _set_relative(by: Floats, joint: int) -> None:
+    by[joint - 1] = 1
+    if joint > 1:
+        by[joint - 2] = -1
+
+
+def _differences(f: Callable[[Floats], float], one: Found) -> Floats:
+    """Return central differences of a user's function by the time and by each number of a state."""
+    x = np.append(one.t, one.y)
+    found = np.empty_like(x)
+    for i, by in enumerate(STEP * np.maximum(np.abs(x), 1)):
+        above, below = x.copy(), x.copy()
+        above[i], below[i] = x[i] + by, x[i] - by
+        found[i] = (f(above) - f(below)) / (above[i] - below[i])
+    return found
+
+
+def _of_the_line(
+    normal: Floats, one: Found, scene: Scene, names: tuple[str, ...]
+) -> tuple[Floats, Floats, float]:
+    """Return the derivatives of normal . tip, of links that are as long with a pivot that moves so.
+
+    Whatever else acts on the links is left out, and so is a place where it has no derivative.
+    """
+    drives = {i: x for i, x in enumerate(scene.effects, 1) if isinstance(x, DrivenPivot)}
+    renamed = {f"effect[{i}].": f"effect[{place}]." for place, i in enumerate(drives, 1)}
+    bare = Scene(
+        links=[Link(mass=1.0, length=link.length) for link in scene.links],
+        effects=list(drives.values()),
+    )
+    inputs = {}
+    for column, name in enumerate(names):
+        first, dot, rest = name.partition(".")
+        new = renamed.get(first + dot, first + dot) + rest
+        if (first + dot in renamed and rest) or (first.startswith("link") and rest == "length"):
+            inputs[column] = new
+    tip = [f"{axis}[{len(scene.links)}]" for axis in "xy"]
+    place = bare.linearize(one.q, one.qd, one.t, inputs=inputs.values(), outputs=tip)
+    by_names = np.zeros(len(names))
+    by_names[list(inputs)] = normal @ place.D
+    pivot = bare.velocities(one.t, one.q, one.qd)[0]
+    return normal @ place.C, by_names, float(normal @ pivot)

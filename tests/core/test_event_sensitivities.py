@@ -1,0 +1,274 @@
+"""How times and states of events change: exact answers, differences of runs, and what has none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+
+E, V = pc.effects, pc.events
+ROD = pc.Link(mass=1.0, length=1.0)
+TEXTBOOK = pc.Scene.textbook()
+BOTTOM = V.LinkAngle(1, np.pi / 2)
+EXACTLY: Any = {"rtol": 1e-13, "atol": 1e-16}
+
+
+def moved(
+    scene: pc.Scene, span: Any, q0: Any, qd0: Any, names: Any, event: V.Event, **how: Any
+) -> Any:
+    """Return the times at which an event is found, and their derivatives."""
+    how |= {"sensitivities": names, "events": [event]}
+    sol = pc.simulate(scene, span, q0, qd0, **EXACTLY | how)
+    (found,) = sol.event_sensitivities()
+    times = sol.events[0].t
+    assert found.t.shape == (len(times), len(names))
+    assert found.y.shape == (len(times), 2 * len(scene.links), len(names))
+    return times, found
+
+
+# Exact answers ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("end", [3.0, -3.0])
+def test_a_rod_let_go_at_rest(end: float) -> None:
+    """Times go as (l/g)^(1/2), and at the bottom the rate is (3 g (1 - sin q0)/l)^(1/2)."""
+    g, length, q0 = 9.807, 0.8, 0.2
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=length)], gravity=g)
+    t, by = moved(scene, (0, end), q0, 0.0, ["gravity", "link[1].length", "q0[1]"], BOTTOM)
+    assert len(t) > 1
+    np.testing.assert_allclose(by.t[:, 0], -t / (2 * g), rtol=1e-10)
+    np.testing.assert_allclose(by.t[:, 1], t / (2 * length), rtol=1e-10)
+    rate = np.sign(end) * (-1.0) ** np.arange(len(t)) * np.sqrt(3 * g * (1 - np.sin(q0)) / length)
+    right = [rate / (2 * g), -rate / (2 * length), -3 * g * np.cos(q0) / (2 * length * rate)]
+    np.testing.assert_allclose(by.y[:, 1], np.transpose(right), rtol=1e-10)
+    np.testing.assert_allclose(by.y[:, 0], 0, atol=1e-10)
+
+
+def test_a_rod_turns_back_as_high_as_it_began() -> None:
+    t, by = moved(pc.Scene(links=[ROD]), (0, 3), 0.3, 0.0, ["q0[1]", "gravity"], V.RateZero(link=1))
+    assert len(t) > 2
+    there_and_back = (-1.0) ** np.arange(1, len(t) + 1)
+    np.testing.assert_allclose(by.y[:, 0, 0], there_and_back, rtol=1e-9)
+    np.testing.assert_allclose(by.y[:, 0, 1], 0, atol=1e-10)
+    np.testing.assert_allclose(by.y[:, 1], 0, atol=1e-10)
+    np.testing.assert_allclose(by.t[:, 0], np.arange(1, len(t) + 1) * by.t[0, 0], rtol=1e-9)
+
+
+def test_after_a_bounce() -> None:
+    """At a constant rate w up to s, and then with -e w: t = (s - q0)/w + (s - a)/(e w)."""
+    q0, w, s, e, a = 0.2, 3.0, 0.8, 0.6, 0.1
+    stop = E.JointStop(joint=1, range=(-9, s), restitution=e)
+    scene = pc.Scene(links=[ROD], gravity=0.0, effects=[stop])
+    names = ["q0[1]", "qd0[1]", "effect[1].range.upper", "effect[1].restitution"]
+    t, by = moved(scene, (0, 2), q0, w, names, V.JointAngle(1, a, direction=-1))
+    assert t == pytest.approx([(s - q0) / w + (s - a) / (e * w)])
+    right = [
+        -1 / w,
+        -(s - q0) / w**2 - (s - a) / (e * w**2),
+        (1 + 1 / e) / w,
+        -(s - a) / (e**2 * w),
+    ]
+    np.testing.assert_allclose(by.t, [right], rtol=1e-11)
+    np.testing.assert_allclose(by.y, [[[0] * 4, [0, -e, 0, -w]]], rtol=0, atol=1e-11)
+
+
+def test_a_tip_whose_pivot_moves_crosses_a_line() -> None:
+    """A link that turns about its mass centre, at the pivot, keeps its rate whatever moves that."""
+    A, omega, phase, length, q0, w, c = 0.3, 4.0, 0.7, 1.2, 0.1, 1.5, 0.9
+    shaken = E.DrivenPivot(y=E.Sinusoid(amplitude=A, angular_frequency=omega, phase=phase))
+    wheel = pc.Link(mass=1.0, length=length, center=0.0, inertia=0.0)
+    scene = pc.Scene(links=[wheel], effects=[E.RotorInertia(joint=1, armature=0.2), shaken])
+    names = ["q0[1]", "qd0[1]", "link[1].length", "gravity", "effect[1].armature"]
+    names += [f"effect[2].y.{one}" for one in ("amplitude", "angular_frequency", "phase")]
+    t, by = moved(scene, (0, 4), q0, w, names, V.TipLine(point=(5.0, c), normal=(0.0, -2.0)))
+    assert len(t) > 1
+    # 0 = A sin(omega t + phase) + l sin(q0 + w t) - c
+    drive, q = omega * t + phase, q0 + w * t
+    slope = A * omega * np.cos(drive) + length * w * np.cos(q)
+    none = 0 * t
+    by_names = [length * np.cos(q), length * t * np.cos(q), np.sin(q), none, none, np.sin(drive),
+                A * t * np.cos(drive), A * np.cos(drive)]  # fmt: skip
+    dt = -np.transpose(by_names) / slope[:, None]
+    np.testing.assert_allclose(by.t, dt, rtol=1e-10, atol=1e-12)
+
+
+# Differences of runs ----------------------------------------------------------------------------
+
+FRICTION = E.DryJointFriction(joint=2, coulomb=8.0)
+STOP = E.JointStop(joint=2, range=(-0.5, 0.8), restitution=0.4)
+DRIVEN = [
+    E.DrivenPivot(
+        x=E.Sinusoid(amplitude=0.1, angular_frequency=3.0),
+        y=E.Sinusoid(amplitude=0.2, angular_frequency=5.0),
+    ),
+    E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=2.0, angular_frequency=3.0)),
+]
+LINE = V.TipLine(point=(0.2, 0.4), normal=(1.0, 0.3))
+OWN = V.Function(lambda t, q, qd: np.sin(3 * t) * qd[0] + q[1] - 0.5)
+NAMES = ["q0[1]", "qd0[2]", "gravity", "link[2].length", "torque[1]"]
+OF_THE_PIVOT = ["effect[1].x.amplitude", "effect[1].y.angular_frequency", "link[1].length"]
+FORWARD, BACK = (0, 2.5), (2.5, 0)
+COMPARED: dict[str, tuple[list[Any], Any, V.Event, list[str]]] = {
+    "an angle of a joint": ([], FORWARD, V.JointAngle(2, 0.1), NAMES),
+    "every turn of a link": ([], FORWARD, V.LinkAngle(2, 2.5 * np.pi, every_turn=True), NAMES),
+    "a rate of a joint": ([], FORWARD, V.RateZero(joint=2), NAMES),
+    "a rate of a link": ([], FORWARD, V.RateZero(link=2, direction=1), NAMES),
+    "the tip": ([], FORWARD, LINE, NAMES),
+    "a function": ([], FORWARD, OWN, NAMES),
+    "the tip below a driven pivot": (DRIVEN, FORWARD, LINE, NAMES + OF_THE_PIVOT),
+    "a rate below a driven pivot": (DRIVEN, FORWARD, V.RateZero(joint=2), NAMES + OF_THE_PIVOT),
+    "the tip, back in time": (DRIVEN, BACK, LINE, NAMES + OF_THE_PIVOT),
+    "a function, back in time": (DRIVEN, BACK, OWN, NAMES),
+    "an angle between impacts": ([STOP], FORWARD, BOTTOM, [*NAMES, "effect[1].restitution"]),
+    "the tip between impacts": ([STOP], FORWARD, LINE, [*NAMES, "effect[1].range.upper"]),
+    "a turn while the other joint sticks": (
+        [FRICTION], FORWARD, V.RateZero(link=1), ["q0[1]", "gravity", "effect[1].coulomb"],
+    ),
+    "the tip while the other joint sticks": (
+        [FRICTION], FORWARD, LINE, ["q0[1]", "gravity", "link[1].length"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", COMPARED)
+def test_derivatives_are_the_slopes_of_runs(case: str) -> None:
+    effects, span, event, names = COMPARED[case]
+    scene, start = TEXTBOOK.replace(effects=effects), [0.3, 0.6, 0.5, 0.0]
+    t, by = moved(scene, span, start[:2], start[2:], names, event)
+    assert len(t) > 1
+    assert np.isfinite(by.t).all()
+
+    def found(name: str, change: float) -> Any:
+        y, there = list(start), scene
+        if name.startswith("q"):
+            y[int(name[-2]) - 1 + 2 * name.startswith("qd")] += change
+        elif name.startswith("torque"):
+            there = scene.replace(effects=[*effects, E.Motor(joint=1, constant=change)])
+        else:
+            there = scene.with_parameters({name: scene.parameters()[name] + change})
+        run = pc.simulate(there, span, y[:2], y[2:], events=[event], **EXACTLY)
+        return np.column_stack([run.events[0].t, run.events[0].y])
+
+    for column, name in enumerate(names):
+        coarse, fine = ((found(name, h) - found(name, -h)) / (2 * h) for h in (2e-4, 1e-4))
+        slopes = (4 * fine - coarse) / 3
+        size = max(1.0, np.abs(slopes).max())
+        told = np.column_stack([by.t[:, column], by.y[:, :, column]])
+        np.testing.assert_allclose(told, slopes, rtol=0, atol=1e-8 * size, err_msg=name)
+
+
+# Where they are asked for -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"store": "end"}, {"t_eval": [0.1, 0.2]}, {"error": 1e-7}, {"method": "rk4", "step": 1e-3},
+     {"method": "dop853"}, {"max_steps": 9, "on_failure": "ignore", "rtol": 1e-3}],
+    ids=str,
+)  # fmt: skip
+def test_whatever_is_kept_and_however_it_is_run(options: dict[str, Any]) -> None:
+    sol = pc.simulate(TEXTBOOK, (0, 2), 0.5, sensitivities=["gravity"], events=[BOTTOM], **options)
+    before = sol.fingerprint
+    (found,) = sol.event_sensitivities()
+    assert len(found.t) == len(sol.events[0]) > 0
+    np.testing.assert_allclose(found.t[:, 0], -sol.events[0].t / (2 * 9.807), rtol=1e-2)
+    assert sol.fingerprint == before
+
+
+def test_an_event_that_ends_the_run_and_one_that_does_not_come(tmp_path: Path) -> None:
+    last = V.RateZero(link=1, terminal=2)
+    events = [V.LinkAngle(1, 9.0), last, BOTTOM]
+    sol = pc.simulate(TEXTBOOK, (0, 1e6), 0.5, sensitivities=["gravity", "q0[1]"], events=events)
+    never, turns, bottom = sol.event_sensitivities()
+    assert sol.status == "event"
+    assert never.t.shape == (0, 2)
+    assert never.y.shape == (0, 4, 2)
+    np.testing.assert_allclose(turns.t[:, 0], -sol.events[1].t / (2 * 9.807), rtol=1e-6)
+    assert bottom.t.shape == (len(sol.events[2]), 2)
+    sol.save(tmp_path / "run.npz")
+    again = pc.load(tmp_path / "run.npz").event_sensitivities()
+    np.testing.assert_array_equal(again[1].y, turns.y)
+
+
+# Where there is none ----------------------------------------------------------------------------
+
+JUMPING = E.Motor(joint=1, table=E.Table(t=[0, 0.5, 3], torque=[0.0, 6.0, 6.0], hold=True))
+BENT = E.Motor(joint=1, table=E.Table(t=[0, 0.5, 3], torque=[0.0, 6.0, 0.0]))
+SLOWED = E.DryJointFriction(joint=1, coulomb=6.0)
+WITHOUT: dict[str, tuple[list[Any], V.Event, float]] = {
+    "at an impact": ([E.JointStop(joint=1, range=(-9, 1.2))], V.LinkAngle(1, 1.2), 0.0),
+    "at an impact that lets it go": (
+        [E.JointStop(joint=1, range=(-9, 1.2), restitution=0.5)], V.RateZero(link=1), 0.0,
+    ),
+    "where a joint comes to stick": ([SLOWED], V.RateZero(link=1, terminal=True), 1.0),
+    "where friction turns round": (
+        [E.DryJointFriction(joint=1, coulomb=0.5)], V.RateZero(link=1, terminal=True), 1.0,
+    ),
+    "where a table jumps": ([JUMPING], V.Function(lambda t, q, qd: t - 0.5), 0.0),
+    "where a table jumps, at the end": (
+        [JUMPING], V.Function(lambda t, q, qd: t - 0.5, terminal=True), 0.0,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("span", [(0, 1), (1, 0)], ids=["forward", "back"])
+def test_a_jump_of_a_law_has_two_derivatives_and_a_bend_has_one(span: Any) -> None:
+    clock = V.Function(lambda t, q, qd: t - 0.5)
+    for effect in (JUMPING, BENT):
+        scene = pc.Scene(links=[ROD], effects=[effect])
+        t, by = moved(scene, span, 0.3, 0.0, ["q0[1]"], clock)
+        assert t == pytest.approx([0.5], abs=1e-14)
+        assert np.isnan(by.t).all() == np.isnan(by.y).all() == (effect is JUMPING)
+    there = pc.simulate(scene, (span[0], 0.5), 0.3, sensitivities=["q0[1]"], store="end", **EXACTLY)
+    assert there.sensitivities is not None
+    np.testing.assert_allclose(by.t, 0, atol=1e-12)
+    np.testing.assert_allclose(by.y[0], there.sensitivities[-1], rtol=1e-10)
+
+
+@pytest.mark.parametrize("store", ["dense", "end"])
+@pytest.mark.parametrize("case", WITHOUT)
+def test_what_has_no_derivative_is_not_a_number(case: str, store: str) -> None:
+    effects, event, rate = WITHOUT[case]
+    scene = pc.Scene(links=[ROD], effects=effects)
+    how: Any = {"sensitivities": ["q0[1]", "gravity"], "events": [event]}
+    sol = pc.simulate(scene, (0, 1), 1.0, rate, store=store, **how)
+    (found,) = sol.event_sensitivities()
+    assert len(found.t) >= 1
+    assert np.isnan(found.t[0]).all()
+    assert np.isnan(found.y[0]).all()
+
+
+def test_a_joint_that_bounces_to_rest_has_none_where_it_turns_at_the_stop() -> None:
+    stop = E.JointStop(joint=1, range=(-9, 1.2), restitution=0.3)
+    turn = V.RateZero(link=1)
+    t, by = moved(pc.Scene(links=[ROD], effects=[stop]), (0, 3), 0.5, 0.0, ["gravity"], turn)
+    assert len(t) > 10
+    above = np.array([not np.isnan(one).any() for one in by.t])
+    assert 1 <= above.sum() < len(t) / 2  # the turns in the air
+    np.testing.assert_allclose(by.t[above, 0], -t[above] / (2 * 9.807), rtol=1e-6)
+
+
+def test_a_touch_has_none() -> None:
+    """The angle is (t - 1)^2; above it, a line is crossed once on each side."""
+    push = E.Motor(joint=1, constant=2 / 3)
+    scene = pc.Scene(links=[ROD], gravity=0.0, effects=[push])
+    at_zero, loose = V.LinkAngle(1, 0.0), {"method": "dop853", "rtol": 1e-9, "atol": 1e-12}
+    t, by = moved(scene, (0, 2), 1.0, -2.0, ["q0[1]"], at_zero, **loose)
+    assert t == pytest.approx([1])
+    assert np.isnan(by.t).all()
+    assert np.isnan(by.y).all()
+    t, by = moved(scene, (0, 2), 1.0, -2.0, ["q0[1]"], V.LinkAngle(1, 0.25))
+    assert t == pytest.approx([0.5, 1.5])
+    np.testing.assert_allclose(by.t[:, 0], [1, -1], rtol=1e-10)
+
+
+@pytest.mark.parametrize("missing", ["sensitivities", "events"])
+def test_only_a_run_with_events_and_derivatives_has_those_of_events(missing: str) -> None:
+    how: Any = {"sensitivities": ["q0[1]"], "events": [BOTTOM]}
+    del how[missing]
+    told = {"sensitivities": "has no sensitivities", "events": "looked for no events"}[missing]
+    with pytest.raises(ValueError, match=rf"the run {told}: simulate\(\.\.\., {missing}="):
+        pc.simulate(TEXTBOOK, (0, 1), 0.5, **how).event_sensitivities()
