@@ -184,9 +184,13 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
     found.is_there &= left_out <= allowed;
     const double of_two_orders = std::sqrt(ratio);
     int order = order_;
-    for (; left_out > safety * allowed; left_out *= of_two_orders) order += 2;
-    for (; order > lowest_order && left_out <= safety * of_two_orders * allowed; order -= 2) {
+    while (left_out > safety * allowed) {
+      left_out *= of_two_orders;
+      order += 2;
+    }
+    while (order > lowest_order && left_out <= safety * of_two_orders * allowed) {
       left_out /= of_two_orders;
+      order -= 2;
     }
     found.wanted_order = std::max(found.wanted_order, order);
   }

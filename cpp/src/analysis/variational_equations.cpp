@@ -157,14 +157,15 @@ void VariationalEquations::take_laws(double t, const EquationsOfMotion& run, boo
 void VariationalEquations::put_along(double t, bool forward) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
-  forces_ = JointForces::on_free_joints(scene_, held);
-  along_.emplace(scene_, modes_, t, forward, names_of_parameters_);
+  forces_ = std::make_unique<JointForces>(JointForces::on_free_joints(scene_, held));
+  along_ = std::make_unique<MechanismAlong>(scene_, modes_, t, forward, names_of_parameters_);
   mechanisms_ = along_->with_all_slopes();
   ++changes_of_laws_;
 }
 
-void VariationalEquations::at(double t, const double* y, Eigen::Ref<Matrix> by_q,
-                              Eigen::Ref<Matrix> by_qd, Eigen::Ref<Matrix> by_parameters) {
+void VariationalEquations::at(double t, const double* y, const Eigen::Ref<Matrix>& by_q,
+                              const Eigen::Ref<Matrix>& by_qd,
+                              const Eigen::Ref<Matrix>& by_parameters) {
   const double* const qd = y + n_;
   jacobian_(t, y, qd, by_q, by_qd);
   if (parameters_.empty()) return;

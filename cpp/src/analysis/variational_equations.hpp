@@ -10,7 +10,7 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,8 +62,8 @@ class VariationalEquations {
 
   /// What the equations are at a state y: by_q and by_qd, (n, n), and by each of the parameters,
   /// (n, parameters).
-  void at(double t, const double* y, Eigen::Ref<Matrix> by_q, Eigen::Ref<Matrix> by_qd,
-          Eigen::Ref<Matrix> by_parameters);
+  void at(double t, const double* y, const Eigen::Ref<Matrix>& by_q,
+          const Eigen::Ref<Matrix>& by_qd, const Eigen::Ref<Matrix>& by_parameters);
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
   /// How large d qdd/d p may be by rounding alone, in units of epsilon, at the last point.
   double size_of(const Parameter& one) const {
@@ -81,8 +81,8 @@ class VariationalEquations {
   std::vector<Parameter> parameters_;
   std::vector<std::string> names_of_parameters_;
   std::vector<int> modes_;
-  std::optional<JointForces> forces_;  ///< on the joints that turn
-  std::optional<MechanismAlong> along_;
+  std::unique_ptr<JointForces> forces_;  ///< on the joints that turn
+  std::unique_ptr<MechanismAlong> along_;
   std::vector<Mechanism<AlongParameters>> mechanisms_;
   int changes_of_laws_ = 0;
   ChangesOfAccelerations by_parameters_;

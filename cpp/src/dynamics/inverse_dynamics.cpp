@@ -73,7 +73,7 @@ PENDCORE_INLINE void InverseDynamics<Number>::go_out_and_back(InverseDynamics* s
   }
 
   for (std::size_t e = 0; e < mechanism->effects.size(); ++e) {
-    const auto& [place, couple, law, moves_pivot, pivot, waves] = mechanism->effects[e];
+    const auto& [pivot, law, couple, waves, place, moves_pivot] = mechanism->effects[e];
     RowLoads<Number>& loads = self->loads_[place];
     if (couple) {
       loads.couple(couple->torque(t, relative(q, place + 1), relative(qd, place + 1),

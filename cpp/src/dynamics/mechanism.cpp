@@ -179,6 +179,7 @@ MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes
   for (const std::string& name : names) {
     values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
   }
+  slopes_.reserve(names.size());
   for (std::size_t which = 0; which < names.size(); ++which) {
     const auto slopes = slopes_along(scene, modes, t, forward, choice, values, which);
     corners_.push_back(!slopes);

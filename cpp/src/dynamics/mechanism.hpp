@@ -32,12 +32,12 @@ struct Mechanism {
     Number angular_frequency{}, phase{};
   };
   struct Acting {
-    int place = 0;  ///< the joint or the link, from 0
-    std::optional<CoupleOf<Number>> couple{};
+    PivotLawOf<Number> pivot{};  ///< if it moves the pivot
     std::optional<LawOn<Number>> law{};
-    bool moves_pivot = false;
-    PivotLawOf<Number> pivot{};
+    std::optional<CoupleOf<Number>> couple{};
     std::vector<Wave> waves{};
+    int place = 0;  ///< the joint or the link, from 0
+    bool moves_pivot = false;
   };
 
   Number gravity{}, payload_mass{}, payload_inertia{};
