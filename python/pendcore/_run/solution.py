@@ -226,7 +226,7 @@ class Solution:
 
     @property
     def step_starts(self) -> Floats:
-        """Times at which the accepted steps begin, s, whatever was kept."""
+        """Times at which the accepted steps begin, s; none where the run has no dense output."""
         return self._run.step_starts
 
     @property
