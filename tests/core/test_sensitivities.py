@@ -73,6 +73,31 @@ def test_derivatives_are_those_of_the_reference(n: int) -> None:
         assert error <= 1e-11 * max(1.0, np.abs(right).max()), name
 
 
+@pytest.mark.parametrize("name", ["effect[1].damping", "effect[1].damping3"])
+@pytest.mark.parametrize("method", ["taylor", "dop853"])
+def test_a_change_that_begins_slowly_is_that_of_the_reference(method: str, name: str) -> None:
+    """From rest, a change by damping is zero at the start, and so is its rate."""
+    described: list[Described] = [("viscous_joint", {"joint": 1, "damping": 0.1, "damping3": 0.02})]
+    times, start = np.array([0.0, 0.4]), [0.4, -0.9]
+    sol = pc.simulate(scene_of(BODIES[:2], 9.807, described), (0, 0.4), start, 0.0, method=method,
+                      rtol=1e-13, atol=1e-16, t_eval=times, sensitivities=[name])  # fmt: skip
+    assert sol.sensitivities is not None
+    right = exact(2, described, [*start, 0.0, 0.0], name, times)
+    np.testing.assert_allclose(sol.sensitivities[:, :, 0], right, rtol=0, atol=1e-11)
+
+
+def test_a_chain_of_many_links_keeps_within_its_memory() -> None:
+    """Effects of joints beyond the second once had places in rows of two: processes crashed."""
+    n = 200
+    links = [pc.Link(mass=0.001, length=0.1)] * n
+    effects = [E.ViscousJoint(joint=j + 1, damping=1e-5) for j in range(n)]
+    scene = pc.Scene(links=links, effects=effects)
+    for _ in range(3):
+        sol = pc.simulate(scene, (0, 0.001), 0.2, 0.0, sensitivities=["q0[1]"])
+        assert sol.sensitivities is not None
+        assert sol.sensitivities[-1, 0, 0] == pytest.approx(1.0, abs=1e-2)
+
+
 def test_square_damping_and_limits_have_theirs() -> None:
     """Laws whose pieces meet without a jump: against runs on either side."""
     effects = [

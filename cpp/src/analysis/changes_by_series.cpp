@@ -30,35 +30,45 @@ PENDCORE_INLINE void expand_series(const Series* series, double t, const AlongNa
   series->expand(t, y, sigma, order, rows);
 }
 
-/// Of the slopes of a series at x: the largest of orders 0 and 1, of the last four orders, and of
-/// the four before. By symmetry three of four may vanish.
+/// Computes the slopes of number i of a series at x.
+PENDCORE_INLINE Slopes sum_of_slopes(const AlongNames* rows, int size, int order, double x, int i) {
+  Slopes sum = rows[order * size + i].slope;
+  for (int k = order; k-- > 0;) sum = fma(x, sum, rows[k * size + i].slope);
+  return sum;
+}
+
+/// The largest slopes of a series: at both ends of a step, and those that the last four orders have
+/// at x, its end, and the four before. By symmetry three of four may vanish.
 struct Sizes {
-  double first[names_at_once], last[names_at_once], before[names_at_once];
+  double of_change[names_at_once], last[names_at_once], before[names_at_once];
 };
 PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, double x,
                                 Sizes* sizes) {
   double power = 1.0;  // x^(order - 7)
   for (int k = 7; k < order; ++k) power *= x;
-  const auto largest = [&](int begin, int count, double at) __attribute__((always_inline)) {
+  const auto largest = [&](int begin, double at) __attribute__((always_inline)) {
     Slopes found{};
-    for (int k = begin; k < begin + count; ++k, at *= x) {
+    for (int k = begin; k < begin + 4; ++k, at *= x) {
       for (int i = 0; i < size; ++i) {
         found = larger(found, absolute(Slopes(at * rows[k * size + i].slope)));
       }
     }
     return found;
   };
-  store(sizes->first, largest(0, 2, 1.0));
-  store(sizes->before, largest(order - 7, 4, power));
-  store(sizes->last, largest(order - 3, 4, power * (x * x) * (x * x)));
+  Slopes of_change{};
+  for (int i = 0; i < size; ++i) {
+    const Slopes at_end = sum_of_slopes(rows, size, order, x, i);
+    of_change = larger(of_change, larger(absolute(rows[i].slope), absolute(at_end)));
+  }
+  store(sizes->of_change, of_change);
+  store(sizes->before, largest(order - 7, power));
+  store(sizes->last, largest(order - 3, power * (x * x) * (x * x)));
 }
 
 PENDCORE_INLINE void sum_slopes(const AlongNames* rows, int size, int order, double x,
                                 double* sums) {
   for (int i = 0; i < size; ++i) {
-    Slopes sum = rows[order * size + i].slope;
-    for (int k = order; k-- > 0;) sum = fma(x, sum, rows[k * size + i].slope);
-    store(sums + i * names_at_once, sum);
+    store(sums + i * names_at_once, sum_of_slopes(rows, size, order, x, i));
   }
 }
 
@@ -152,8 +162,9 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
       const auto [has_converged, wanted] = look_at(part, changes, tolerance);
       wanted_order_ = std::max(wanted_order_, wanted);
       if (has_converged) break;
-      if (wanted > highest_order) return false;
-      set_order(std::max(wanted, order_ + 2), changes.rows());
+      const int order = std::max(wanted, order_ + 2);
+      if (order > highest_order) return false;
+      set_order(order, changes.rows());
     }
   }
   return true;
@@ -171,20 +182,20 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
   Convergence found{.is_there = true, .wanted_order = lowest_order};
   for (int k = 0; k < part.count; ++k) {
     if (!changes.col(part.first + k).allFinite()) continue;
-    const double size = sizes.first[k];
+    const double size = sizes.of_change[k];
     if (sizes.last[k] <= 0.1 * epsilon * size && size < largest_size) continue;
+    const double allowed = tolerance * size;
     const double ratio = sizes.last[k] / sizes.before[k];
-    if (!(ratio < 1.0 && size < largest_size)) return none;
+    if (!(ratio < 1.0 && allowed > 0.0 && size < largest_size)) return none;
     if (ratio > 0.5) {
       found = {.is_there = false, .wanted_order = std::max(found.wanted_order, order_ + 6)};
       continue;
     }
-    const double allowed = tolerance * size;
     double left_out = sizes.last[k] * ratio / (1.0 - ratio);
     found.is_there &= left_out <= allowed;
     const double of_two_orders = std::sqrt(ratio);
     int order = order_;
-    while (left_out > safety * allowed) {
+    while (order <= highest_order && left_out > safety * allowed) {
       left_out *= of_two_orders;
       order += 2;
     }

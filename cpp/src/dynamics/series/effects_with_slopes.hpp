@@ -76,7 +76,7 @@ struct EffectsWithSlopes : Drives<AlongNames> {
       if constexpr (places == 1) {
         row = x;
       } else {
-        set_number(row, joint, x);
+        set_number(row, joint % places, x);
       }
     });
     found->has_powers |= !is_zero(one.on_phid2) || !is_zero(one.on_phid3);
