@@ -86,6 +86,20 @@ def test_a_change_that_begins_slowly_is_that_of_the_reference(method: str, name:
     np.testing.assert_allclose(sol.sensitivities[:, :, 0], right, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("method", ["taylor", "dop853", "radau5"])
+def test_a_free_rotation_has_all_of_its_derivatives(method: str) -> None:
+    """Changes are polynomials in time, or nothing but rounding, and no corners."""
+    link = pc.Link(mass=2.0, length=1.022, center=0.349, inertia=0.1)
+    names = ["link[1].center", "q0[1]", "qd0[1]", "gravity", "torque[1]", "link[1].inertia"]
+    sol = pc.simulate(pc.Scene(links=[link], gravity=0.0), (0, 2), 1.1467, -3.686, method=method,
+                      rtol=1e-9, store="end", sensitivities=names)  # fmt: skip
+    assert sol.sensitivities is not None
+    of_mass, of_joint, angle = 2.0 * 0.349, 0.1 + 2.0 * 0.349**2, 1.1467 - 3.686 * 2.0
+    by_gravity = of_mass / of_joint * (np.sin(angle) - np.sin(1.1467)) / -3.686
+    right = [0.0, 0.0, 1.0, by_gravity, 2.0 / of_joint, 0.0]
+    np.testing.assert_allclose(sol.sensitivities[-1, 1], right, rtol=1e-8, atol=1e-13)
+
+
 def test_a_chain_of_many_links_keeps_within_its_memory() -> None:
     """Effects of joints beyond the second once had places in rows of two: processes crashed."""
     n = 200

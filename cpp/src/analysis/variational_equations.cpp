@@ -171,6 +171,8 @@ void VariationalEquations::at(double t, const double* y, const Eigen::Ref<Matrix
   if (parameters_.empty()) return;
   qdd_.resize(n_);
   accelerations_in_force(equations_, t, y, qd, qdd_.data());
+  const double rate = View(qd, n_).cwiseAbs().maxCoeff();
+  size_ = std::max(qdd_.cwiseAbs().maxCoeff(), rate * rate);
   forces_->set_mass_matrix(y);
   forces_->factor_mass();
   by_parameters_.compute(mechanisms_, t, View(y, n_), View(qd, n_), qdd_, *forces_, by_parameters);

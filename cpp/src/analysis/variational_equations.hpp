@@ -67,7 +67,7 @@ class VariationalEquations {
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
   /// How large d qdd/d p may be by rounding alone, in units of epsilon, at the last point.
   double size_of(const Parameter& one) const {
-    return qdd_.cwiseAbs().maxCoeff() / (one.value == 0.0 ? 1.0 : std::abs(one.value));
+    return size_ / (one.value == 0.0 ? 1.0 : std::abs(one.value));
   }
 
  private:
@@ -87,6 +87,7 @@ class VariationalEquations {
   int changes_of_laws_ = 0;
   ChangesOfAccelerations by_parameters_;
   Vector qdd_;
+  double size_ = 0.0;  ///< of the terms of qdd, which may cancel, 1/s^2
 };
 
 }  // namespace pendcore
