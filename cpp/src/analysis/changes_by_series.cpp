@@ -81,9 +81,9 @@ struct ChangesBySeries::Part {
   int count;
   std::vector<AlongNames> rows;
 
-  Part(const Mechanism<AlongNames>& mechanism, DoublePendulumAlongNames::Effects effects,
+  Part(const Mechanism<AlongNames>& mechanism, const std::vector<char>& held,
        Eigen::Index first_name, int names)
-      : series(series_of(mechanism, std::move(effects))), first(first_name), count(names) {}
+      : series(series_of(mechanism, held)), first(first_name), count(names) {}
 
   void set_order(int order, Eigen::Index size) {
     std::visit([order](auto& one) { one.set_order(order); }, series);
@@ -100,13 +100,15 @@ struct ChangesBySeries::Part {
 
  private:
   static AnySeries series_of(const Mechanism<AlongNames>& mechanism,
-                             DoublePendulumAlongNames::Effects effects) {
-    if (DoublePendulumAlongNames::has(effects)) {
-      return DoublePendulumAlongNames(mechanism, std::move(effects));
+                             const std::vector<char>& held) {
+    if (held.size() == 2) {
+      DoublePendulumAlongNames::Effects effects(mechanism, held);
+      if (DoublePendulumAlongNames::has(effects)) {
+        return DoublePendulumAlongNames(mechanism, std::move(effects));
+      }
     }
-    return SeriesOfChain(
-        ConstantsOfChain<AlongNames>(mechanism),
-        std::make_shared<const EffectsWithSlopes<AlongNames>>(mechanism, effects.held));
+    return SeriesOfChain(ConstantsOfChain<AlongNames>(mechanism),
+                         std::make_shared<const EffectsWithSlopes<AlongNames>>(mechanism, held));
   }
 };
 
@@ -129,10 +131,8 @@ void ChangesBySeries::take_laws(const VariationalEquations& equations) {
       if (k >= 0 && k < names_at_once) parameters[k] = static_cast<int>(p);
     }
     const auto mechanism = equations.mechanism_along().with_slopes<AlongNames>(parameters);
-    DoublePendulumAlongNames::Effects effects(mechanism, held);
-    if (!effects.are_all_couples) return parts_.clear();
-    parts_.emplace_back(mechanism, std::move(effects), first,
-                        std::min(names_at_once, names - first));
+    if (!are_all_couples(mechanism)) return parts_.clear();
+    parts_.emplace_back(mechanism, held, first, std::min(names_at_once, names - first));
   }
 }
 

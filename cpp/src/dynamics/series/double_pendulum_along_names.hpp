@@ -91,8 +91,7 @@ class DoublePendulumAlongNames {
   using Effects = EffectsWithSlopes<Links>;
 
   static bool has(const Effects& effects) {
-    return effects.held.size() == 2 && !effects.any_held && effects.pivots.empty() &&
-           effects.waves <= 2;
+    return !effects.any_held && effects.pivots.empty() && effects.waves <= 2;
   }
   DoublePendulumAlongNames(const Mechanism<AlongNames>& of, Effects effects);
 

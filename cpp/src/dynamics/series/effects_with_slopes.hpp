@@ -12,6 +12,19 @@
 
 namespace pendcore {
 
+/// The couple of an effect, if it has one: dry friction without a static peak has.
+inline std::optional<CoupleOf<AlongNames>> couple_of(const Mechanism<AlongNames>::Acting& effect) {
+  if (effect.couple || !effect.law) return effect.couple;
+  const auto* const dry = std::get_if<StribeckLaw<AlongNames>>(&*effect.law);
+  if (dry == nullptr || !is_zero(dry->peak)) return {};
+  return CoupleOf<AlongNames>{.held = -dry->coulomb};
+}
+/// Whether a series takes all laws of a mechanism.
+inline bool are_all_couples(const Mechanism<AlongNames>& mechanism) {
+  return std::ranges::all_of(mechanism.effects,
+                             [](const auto& one) { return !one.law || couple_of(one); });
+}
+
 /// For series that take EffectsInRows in the same way. A row is one number, or a pair.
 template <class AnyRow>
 struct EffectsWithSlopes : Drives<AlongNames> {
@@ -21,7 +34,6 @@ struct EffectsWithSlopes : Drives<AlongNames> {
   std::vector<Couples<Row>> couples;
   std::vector<char> held;  ///< whether each joint is held
   bool any_held;
-  bool are_all_couples = true;  ///< no law is left out
 
   EffectsWithSlopes(const Mechanism<AlongNames>& mechanism, const std::vector<char>& held_joints)
       : held(held_joints), any_held(std::ranges::find(held, 1) != held.end()) {
@@ -37,8 +49,6 @@ struct EffectsWithSlopes : Drives<AlongNames> {
         if (!is_zero(couple->gain)) {
           joint_waves.push_back({effect.place, waves_before, couple->gain});
         }
-      } else {
-        are_all_couples &= !effect.law;
       }
       if (effect.moves_pivot) {
         PivotLawOf<AlongNames>& pivot = pivots.emplace_back(effect.pivot);
@@ -59,12 +69,6 @@ struct EffectsWithSlopes : Drives<AlongNames> {
  private:
   static constexpr int places = std::is_same_v<Row, Number> ? 1 : 2;
 
-  static std::optional<CoupleOf<AlongNames>> couple_of(const Mechanism<AlongNames>::Acting& one) {
-    if (one.couple || !one.law) return one.couple;
-    const auto* const dry = std::get_if<StribeckLaw<AlongNames>>(&*one.law);
-    if (dry == nullptr || !is_zero(dry->peak)) return {};
-    return CoupleOf<AlongNames>{.held = -dry->coulomb};
-  }
   /// Puts what acts on a joint into its place of a row. A row without couples is left out.
   void put_couple(int joint, const CoupleOf<AlongNames>& one) {
     bool is_there = false;
