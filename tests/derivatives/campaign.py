@@ -50,7 +50,7 @@ def judged(seed: int) -> Verdict:
     changes = {name: by for name, by in case.changes.items() if name not in names}
     found = columns[:, is_there] @ [*changes.values()]
     verdict = Verdict(seed, 0, 0, np.nan, "no reference", "it cannot tell what is held")
-    for step in (0.02, 0.005):
+    for step in (0.02, 0.005, 0.00125):
         try:
             right_end, right, events = by_complex_numbers(case, changes, step)
         except (AssertionError, OverflowError, np.linalg.LinAlgError):
