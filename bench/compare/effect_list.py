@@ -39,12 +39,15 @@ EFFECTS = (
     ),
     Effect("torsional_spring", "torsional spring", "joint stiffness"),
     Effect("motor_constant", "motor, constant", "motor actuator"),
-    Effect("motor_sinusoid", "motor, sinusoid", "motor, control set", most_ns=10),
+    Effect(
+        "motor_sinusoid", "motor, sinusoid", "motor, control set", most_ns=10,
+        most_instructions=61,
+    ),
     Effect("motor_table", "motor, table", ""),
     Effect("motor_pd", "motor, PD with limit", "position actuator, forcerange"),
     Effect("rotor_inertia", "rotor inertia", "armature"),
     Effect("payload", "payload", "part of the body"),
-    Effect("driven_pivot", "driven pivot, sinusoid", "", most_ns=10),
+    Effect("driven_pivot", "driven pivot, sinusoid", "", most_ns=10, most_instructions=61),
     Effect("dry_joint_friction", "dry friction, sliding", "frictionloss", same_law=False),
     Effect("joint_limit", "joint stop, never reached", "joint limit", felt=False),
     Effect(
