@@ -11,7 +11,7 @@ import random
 import statistics
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from cases import Case
