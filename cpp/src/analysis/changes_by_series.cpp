@@ -17,10 +17,10 @@ namespace pendcore {
 namespace {
 
 using Slopes = decltype(AlongNames::slope);
-constexpr int lowest_order = 8;  // of which eight are looked at
+constexpr int lowest_order = 8;  // the last eight orders are looked at
 constexpr int usual_order = 14;
 
-/// The series of all other scenes that have one.
+/// Two links that turn freely have a closed form; all other scenes with a series take the chain's.
 using SeriesOfChain = ChainSeries<AlongNames, EffectsWithSlopes<AlongNames>>;
 using AnySeries = std::variant<DoublePendulumAlongNames, SeriesOfChain>;
 
@@ -208,7 +208,7 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
   return found;
 }
 
-void ChangesBySeries::get(double share, Matrix& changes) const {
+void ChangesBySeries::evaluate(double share, Matrix& changes) const {
   static const auto sum = fastest<&sum_slopes, wide_sets>();
   const auto size = static_cast<int>(changes.rows());
   std::vector<double> sums(static_cast<std::size_t>(size) * names_at_once);

@@ -31,7 +31,7 @@ class ChangesBySeries {
   bool expand(const VariationalEquations& equations, double t, const double* y, double h,
               const Matrix& changes, double tolerance);
   /// Writes the changes at a share of that step.
-  void get(double share, Matrix& changes) const;
+  void evaluate(double share, Matrix& changes) const;
 
  private:
   struct Part;

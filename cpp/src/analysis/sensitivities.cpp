@@ -198,7 +198,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   const auto advance_to = [&](double from, double to) {
     if (is_over) return;
     if (by_series) {
-      series.get(to, now);
+      series.evaluate(to, now);
     } else {
       advance(step, from, to, 0);
     }

@@ -47,6 +47,12 @@ std::vector<Number*> numbers_of(Mechanism<Number>& all) {
   return found;
 }
 
+std::vector<double> values_of(Mechanism<double> all) {
+  std::vector<double> values;
+  for (const double* each : numbers_of(all)) values.push_back(*each);
+  return values;
+}
+
 /// A mechanism with the same effects, whose numbers are still to be set.
 template <class Number>
 Mechanism<Number> alike(const Mechanism<double>& plain) {
@@ -85,25 +91,19 @@ bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool f
   return false;
 }
 
-/// The slopes of all numbers of a mechanism along one of some parameters, which have these values;
-/// nothing where a law has a corner.
+/// The slopes of all numbers of a mechanism, which are `numbers`, along one of some parameters,
+/// which have these values; nothing where a law has a corner.
 std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::vector<int>& modes,
-                                                double t, bool forward,
-                                                const ParameterChoice& choice,
+                                                const std::vector<double>& numbers, double t,
+                                                bool forward, const ParameterChoice& choice,
                                                 std::vector<double> values, std::size_t which) {
   const double value = values[which];
-  Mechanism<double> here = mechanism(scene, modes);
-  const std::vector<double*> numbers = numbers_of(here);
   const auto numbers_at = [&](double at) {
     Scene copy = scene;
     values[which] = at;
     choice.set(copy, values);
-    std::vector<double> result;
-    if (has_other_pieces(scene, copy, t, forward)) return result;
-    Mechanism<double> there = mechanism(copy, modes);
-    result.reserve(numbers.size());
-    for (const double* each : numbers_of(there)) result.push_back(*each);
-    return result;
+    if (has_other_pieces(scene, copy, t, forward)) return std::vector<double>{};
+    return values_of(mechanism(copy, modes));
   };
   std::vector<double> slopes(numbers.size());
   const auto take_slopes = [&](double h) {
@@ -115,7 +115,7 @@ std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::v
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const auto slope = extrapolated_slope(
-          *numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
+          numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
           {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
       if (!slope) return false;
       slopes[i] = *slope;
@@ -179,12 +179,13 @@ MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes
   for (const std::string& name : names) {
     values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
   }
+  const std::vector<double> numbers = values_of(here_);
   slopes_.reserve(names.size());
   for (std::size_t which = 0; which < names.size(); ++which) {
-    const auto slopes = slopes_along(scene, modes, t, forward, choice, values, which);
+    const auto slopes = slopes_along(scene, modes, numbers, t, forward, choice, values, which);
     corners_.push_back(!slopes);
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    slopes_.push_back(slopes.value_or(std::vector(numbers_of(here_).size(), none)));
+    slopes_.push_back(slopes.value_or(std::vector(numbers.size(), none)));
   }
 }
 
@@ -197,12 +198,11 @@ void MechanismAlong::refuse_corners() const {
 
 template <class Number>
 Mechanism<Number> MechanismAlong::with_slopes(const std::vector<int>& parameters) const {
-  Mechanism<double> plain = here_;
-  auto result = alike<Number>(plain);
+  auto result = alike<Number>(here_);
   const std::vector<Number*> duals = numbers_of(result);
-  const std::vector<double*> numbers = numbers_of(plain);
+  const std::vector<double> numbers = values_of(here_);
   for (std::size_t i = 0; i < duals.size(); ++i) {
-    *duals[i] = Number(*numbers[i]);
+    *duals[i] = Number(numbers[i]);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       if (parameters[k] < 0) continue;
       set_lane(duals[i]->slope, static_cast<int>(k), slopes_[parameters[k]][i]);

@@ -71,9 +71,9 @@ class MechanismAlong {
   /// Those along all of them, four in each mechanism.
   std::vector<Mechanism<AlongParameters>> with_all_slopes() const;
 
-  /// Of which of them a law has a corner: slopes along these are NaN.
+  /// For each parameter, whether a law has a corner at its value: the slopes along it are NaN then.
   const std::vector<bool>& corners() const { return corners_; }
-  /// Throws std::invalid_argument if there is one.
+  /// Throws std::invalid_argument if some law has a corner.
   void refuse_corners() const;
 
  private:

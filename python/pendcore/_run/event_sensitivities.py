@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pendcore._messages.arguments import Floats
-from pendcore._run.sensitivities import derivatives_of
+from pendcore._run.sensitivities import derivatives_of, sensitivities_there
 from pendcore._run.solution import Solution
 from pendcore._scene.link import Link
 from pendcore._scene.scene import Scene
@@ -57,10 +57,7 @@ class EventSensitivities:
 
 def sensitivities_at_events(solution: Solution) -> list[EventSensitivities]:
     """See `Solution.event_sensitivities`."""
-    if solution.sensitivities is None:
-        raise ValueError(
-            "the run has no sensitivities: simulate(..., sensitivities=[names]) finds them"
-        )
+    sensitivities_there(solution)
     if not (asked := solution.events_asked_for()):
         raise ValueError("the run looked for no events: simulate(..., events=[...]) finds them")
     n, names = len(solution.scene.links), solution.sensitivity_names

@@ -23,12 +23,18 @@ def derivatives_of(
     return watch, run_again(solution, watch, **changed | {"time_limit": None})
 
 
-def errors_of(solution: Solution) -> Floats:
-    """See `Solution.sensitivity_errors`."""
+def sensitivities_there(solution: Solution) -> Floats:
+    """Return the sensitivities of a run; raise ValueError if it has none."""
     if solution.sensitivities is None:
         raise ValueError(
             "the run has no sensitivities: simulate(..., sensitivities=[names]) finds them"
         )
+    return solution.sensitivities
+
+
+def errors_of(solution: Solution) -> Floats:
+    """See `Solution.sensitivity_errors`."""
+    known = sensitivities_there(solution)
     if not len(solution.t):
         return np.empty((0, len(solution.sensitivity_names)))
     times, places = np.unique(solution.t, return_inverse=True)
@@ -42,7 +48,7 @@ def errors_of(solution: Solution) -> Floats:
     rows = np.arange(len(times))
     rows[-1] += _of_the_nearest_state(solution.y[:, -1], other.y[:, len(times) - 1 :])
     latest = np.append(np.flatnonzero(np.diff(places)), len(places) - 1)  # after a jump
-    errors: Floats = np.abs(solution.sensitivities[latest] - watch.values[rows]).max(axis=1)
+    errors: Floats = np.abs(known[latest] - watch.values[rows]).max(axis=1)
     # The other run has an event a little earlier or later: at its very time, one of the two is
     # before it. There, the error is that of the times around.
     errors[1:-1] = np.minimum(errors[1:-1], np.maximum(errors[:-2], errors[2:]))

@@ -188,7 +188,8 @@ inline constexpr auto numbers_of_order = [] {
   return table;
 }();
 
-/// a b + c of a pair of links in the steps of a series, as what is faster in a single run.
+/// a b + c for both links. A single run takes the loop over the lanes, which is faster here
+/// (arithmetic/pack.hpp).
 template <class Half>
 PENDCORE_INLINE Half fma_of_links(const Half& a, const Half& b, const Half& c) {
 #if !defined(__wasm__)
