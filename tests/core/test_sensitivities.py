@@ -100,6 +100,29 @@ def test_a_free_rotation_has_all_of_its_derivatives(method: str) -> None:
     np.testing.assert_allclose(sol.sensitivities[-1, 1], right, rtol=1e-8, atol=1e-13)
 
 
+STRIBECK = E.DryJointFriction(joint=1, coulomb=0.2, static=0.3, stribeck_velocity=0.1)
+
+
+@pytest.mark.parametrize("links", [1, 2, 4])
+@pytest.mark.parametrize("more", [[], [STRIBECK]], ids=["series", "collocation"])
+def test_a_pivot_that_is_pushed_is_gravity_turned(links: int, more: list[E.Effect]) -> None:
+    """Gravity g and an acceleration (a_x, a_y) of the pivot act as the gravity (-a_x, g - a_y)."""
+    bodies = [pc.Link(mass=1.0 + 0.1 * i, length=0.5, center=0.2) for i in range(links)]
+    effects = [E.ViscousJoint(joint=1, damping=0.05), *more]
+    start, how = np.linspace(0.4, 1.1, links), {"rtol": 1e-11, "atol": 1e-14, "t_eval": [0, 0.3]}
+
+    def by(name: str, gravity: float, q0: np.ndarray) -> np.ndarray:
+        scene = pc.Scene(links=bodies, gravity=gravity, effects=effects)
+        names = ["q0[1]", "effect[1].damping", name, "torque[1]"]
+        sol = pc.simulate(scene, (0, 0.3), q0, 3.0, sensitivities=names, **how)
+        assert sol.sensitivities is not None
+        return sol.sensitivities[-1, :, 2]
+
+    down, across = by("gravity", 9.8, start), by("gravity", 0.0, start - np.pi / 2)
+    np.testing.assert_allclose(by("pivot.y", 9.8, start), -down, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(by("pivot.x", 0.0, start), across, rtol=1e-9, atol=1e-11)
+
+
 def test_a_chain_of_many_links_keeps_within_its_memory() -> None:
     """Effects of joints beyond the second once had places in rows of two: processes crashed."""
     n = 200

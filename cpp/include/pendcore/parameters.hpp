@@ -32,12 +32,18 @@ class ParameterChoice {
   ParameterChoice(const Scene& scene, const std::vector<std::string>& names);
 
   std::size_t size() const { return places_.size(); }
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<double>& values() const { return values_; }  ///< those of the scene
 
   /// Sets the chosen parameters of a copy of the scene, in the order of the names. The result is
   /// not checked.
   void set(Scene& copy, std::span<const double> values) const;
+  /// A copy of the scene in which the chosen parameter `which` has another value.
+  Scene changed(const Scene& scene, std::size_t which, double value) const;
 
  private:
+  std::vector<std::string> names_;
+  std::vector<double> values_;
   std::vector<std::size_t> places_;  ///< in the order of parameters()
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 using Slopes = decltype(AlongNames::slope);
 constexpr int lowest_order = 8;  // the last eight orders are looked at
-constexpr int usual_order = 14;
+constexpr int usual_order = 20;
 
 /// Two links that turn freely have a closed form; all other scenes with a series take the chain's.
 using SeriesOfChain = ChainSeries<AlongNames, EffectsWithSlopes<AlongNames>>;
@@ -147,8 +147,11 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
   if (parts_.empty()) return false;
   const double sigma = taylor_detail::power_of_two_below(std::abs(h));
   x_ = h * inverse_of_power_of_two(sigma);
-  if (order_ == 0) set_order(usual_order, changes.rows());
-  if (wanted_order_ < order_ && order_ > lowest_order) set_order(order_ - 2, changes.rows());
+  if (order_ == 0) {
+    set_order(usual_order, changes.rows());
+  } else if (wanted_order_ < order_ && order_ > lowest_order) {
+    set_order(order_ - 2, changes.rows());
+  }
   wanted_order_ = lowest_order;
   for (Part& part : parts_) {
     for (;;) {
@@ -186,8 +189,9 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
     if (sizes.last[k] <= 0.1 * epsilon * size && size < largest_size) continue;
     const double allowed = tolerance * size;
     const double ratio = sizes.last[k] / sizes.before[k];
-    if (!(ratio < 1.0 && allowed > 0.0 && size < largest_size)) return none;
-    if (ratio > 0.5) {
+    const bool may_fall = ratio < 1.0 || order_ < usual_order;
+    if (!(may_fall && allowed > 0.0 && size < largest_size)) return none;
+    if (!(ratio <= 0.5)) {
       found = {.is_there = false, .wanted_order = std::max(found.wanted_order, order_ + 6)};
       continue;
     }

@@ -125,7 +125,7 @@ std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes
       const double slope = one.supports[j].stop(side).restitution;
       if (slope == 0.0) continue;
       if (stop.restitution == 0.0) {
-        refuse_name(one.name, change.t,
+        refuse_name(equations_.names()[one.column], change.t,
                     "the restitution of " + joint_name(j) + " is 0, and can only grow", one.column,
                     changes, told);
       }

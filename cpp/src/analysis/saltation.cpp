@@ -237,13 +237,12 @@ std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedCh
     if (!slope) return std::nullopt;
     found.by_name[column] = sign * *slope;
   }
-  for (const auto& parameter : equations_.parameters()) {
+  for (std::size_t which = 0; which < equations_.parameters().size(); ++which) {
+    const auto& parameter = equations_.parameters()[which];
     if (!changes.col(parameter.column).allFinite()) continue;
-    const ParameterChoice choice(scene, {parameter.name});
     const double value = parameter.value;
     const auto changed = [&](double h) {
-      Scene there = scene;
-      choice.set(there, std::vector{value + h});
+      const Scene there = equations_.choice().changed(scene, which, value + h);
       return holding_torque(there, run, change.t, y, j);
     };
     const double step = value == 0.0 ? 0x1p-4 : std::ldexp(1.0, std::ilogb(value) - 5);

@@ -25,9 +25,42 @@ int number_of(const std::string& name, const std::string& kind, int n) {
                               (n > 1 ? " to " + kind + "[" + std::to_string(n) + "]" : ""));
 }
 
-/// The same scene with a motor that gives nothing in each joint whose torque is named, and the
-/// names with those of its constants.
-Scene with_torques(Scene scene, std::vector<std::string>& names) {
+/// A pivot with a constant acceleration, beside what else moves it.
+struct PushedPivot {
+  double x = 0.0, y = 0.0;  ///< m/s^2
+
+  static constexpr EffectInfo info{.name = "PushedPivot",
+                                   .kind = "pushed_pivot",
+                                   .sentence = "A pivot with a constant acceleration.",
+                                   .law = "x_0'' = x,  y_0'' = y",
+                                   .source = "d'Alembert's principle",
+                                   .moves_pivot = true,
+                                   .has_series = true};
+  static constexpr auto parameters =
+      std::tuple{parameter(&PushedPivot::x, {.name = "x", .unit = "m/s^2"}),
+                 parameter(&PushedPivot::y, {.name = "y", .unit = "m/s^2"})};
+};
+class PushedPivotBehaviour final : public EffectOf<PushedPivot> {
+ public:
+  using EffectOf::EffectOf;
+  std::optional<PivotLaw> pivot_law(int /*mode*/) const override {
+    return PivotLaw{.x = {.held = given_.x}, .y = {.held = given_.y}};
+  }
+};
+std::shared_ptr<const EffectBehaviour> behaviour(PushedPivot given) {
+  return std::make_shared<PushedPivotBehaviour>(given);
+}
+
+/// The same scene with a motor that gives nothing in each joint whose torque is named, and a pivot
+/// that nothing pushes if its acceleration is; and the names with those of their constants.
+Scene with_inputs(Scene scene, std::vector<std::string>& names) {
+  for (std::string& name : names) {
+    if (name != "pivot.x" && name != "pivot.y") continue;
+    if (scene.effects.empty() || !scene.effects.back().is<PushedPivot>()) {
+      scene.effects.push_back(PushedPivot{});
+    }
+    name = "effect[" + std::to_string(scene.effects.size()) + "]." + name.back();
+  }
   const auto n = static_cast<int>(scene.links.size());
   const std::vector<bool> locked = locked_joints(scene);
   for (std::string& name : names) {
@@ -43,25 +76,29 @@ Scene with_torques(Scene scene, std::vector<std::string>& names) {
   return scene;
 }
 
-double value_of(const Scene& scene, const std::string& name) {
-  const std::vector<NamedNumber> all = parameters(scene);
-  return std::ranges::find(all, name, &NamedNumber::name)->value;
-}
-
-void require_parameter(const Scene& scene, const std::string& name) {
-  if (name.starts_with("q[") || name.starts_with("qd[")) {
+/// Those of the names that are no starts.
+ParameterChoice choice_of(const Scene& scene, std::vector<std::string> names) {
+  const auto n = static_cast<int>(scene.links.size());
+  std::erase_if(names, [n](const std::string& name) {
+    return number_of(name, "q0", n) >= 0 || number_of(name, "qd0", n) >= 0;
+  });
+  for (const std::string& name : names) {
+    if (!name.starts_with("q[") && !name.starts_with("qd[")) continue;
     throw std::invalid_argument("sensitivities: \"" + name +
                                 "\": a start is named q0[i] or qd0[i]");
   }
   try {
-    const ParameterChoice known(scene, {name});
+    return {scene, names};
   } catch (const std::invalid_argument& unknown) {
     throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
-                                "; others are q0[i], qd0[i] and torque[j]");
+                                "; others are q0[i], qd0[i], torque[j], pivot.x and pivot.y");
   }
-  const double value = value_of(scene, name);
-  Scene other = scene;
-  ParameterChoice(scene, {name}).set(other, std::vector{value + 1e-9 * std::max(1.0, value)});
+}
+
+void require_smooth(const Scene& scene, const ParameterChoice& choice, std::size_t which) {
+  const std::string& name = choice.names()[which];
+  const double value = choice.values()[which];
+  const Scene other = choice.changed(scene, which, value + 1e-9 * std::max(1.0, value));
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (other.effects[i]->has_modes() == scene.effects[i]->has_modes()) continue;
     throw std::invalid_argument("sensitivities: \"" + name + "\": is " + text(value) +
@@ -79,13 +116,12 @@ void require_parameter(const Scene& scene, const std::string& name) {
 }
 
 /// (1 / 2h) (ahead - behind), which is exact up to rounding: supports are linear in parameters.
-std::vector<JointSupport> slopes_of(const Scene& scene, const std::string& name) {
-  const double value = value_of(scene, name);
+std::vector<JointSupport> slopes_of(const Scene& scene, const ParameterChoice& choice,
+                                    std::size_t which) {
+  const double value = choice.values()[which];
   const double h = value == 0.0 ? 1.0 : std::ldexp(1.0, std::ilogb(value) - 8);
-  const ParameterChoice choice(scene, {name});
   const auto at = [&](double x) {
-    Scene changed = scene;
-    choice.set(changed, std::vector{x});
+    const Scene changed = choice.changed(scene, which, x);
     return joint_supports(changed, Inertia(changed));
   };
   std::vector<JointSupport> slopes = at(value + h);
@@ -109,19 +145,18 @@ VariationalEquations::VariationalEquations(const Scene& scene,
                                            const std::vector<std::string>& names)
     : names_(names),
       known_names_(names),
-      scene_(with_torques(scene, known_names_)),
+      scene_(with_inputs(scene, known_names_)),
       n_(static_cast<int>(scene.links.size())),
       equations_(equations_of_motion(scene_)),
-      jacobian_(scene_, equations_) {
+      jacobian_(scene_, equations_),
+      choice_(choice_of(scene_, known_names_)) {
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::string& name = known_names_[k];
-    if (number_of(name, "q0", n_) >= 0 || number_of(name, "qd0", n_) >= 0) continue;
-    require_parameter(scene_, name);
-    names_of_parameters_.push_back(name);
+    const std::size_t which = parameters_.size();
+    if (which == choice_.size() || known_names_[k] != choice_.names()[which]) continue;
+    require_smooth(scene_, choice_, which);
     parameters_.push_back({.column = static_cast<Eigen::Index>(k),
-                           .name = name,
-                           .value = value_of(scene_, name),
-                           .supports = slopes_of(scene_, name)});
+                           .value = choice_.values()[which],
+                           .supports = slopes_of(scene_, choice_, which)});
   }
 }
 
@@ -158,7 +193,7 @@ void VariationalEquations::put_along(double t, bool forward) {
   std::vector<bool> held(n_);
   for (int j = 0; j < n_; ++j) held[j] = equations_.effects && equations_.effects->held[j] != 0;
   forces_ = std::make_unique<JointForces>(JointForces::on_free_joints(scene_, held));
-  along_ = std::make_unique<MechanismAlong>(scene_, modes_, t, forward, names_of_parameters_);
+  along_ = std::make_unique<MechanismAlong>(scene_, modes_, t, forward, choice_);
   mechanisms_ = along_->with_all_slopes();
   ++changes_of_laws_;
 }

@@ -19,15 +19,16 @@
 #include "dynamics/inverse_dynamics.hpp"
 #include "dynamics/jacobian.hpp"
 #include "dynamics/joint_forces.hpp"
+#include "pendcore/parameters.hpp"
 #include "pendcore/scene.hpp"
 
 namespace pendcore {
 
 class VariationalEquations {
  public:
-  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, a constant "torque[j]" in a joint beside
-  /// what its effects give, or a parameter (parameters.hpp). Throws std::invalid_argument for
-  /// another name.
+  /// Each name is "q0[i]" or "qd0[i]", i counted from 1, a constant "torque[j]" in a joint or a
+  /// constant acceleration of the pivot, "pivot.x" or "pivot.y", beside what effects give, or a
+  /// parameter (parameters.hpp). Throws std::invalid_argument for another name.
   VariationalEquations(const Scene& scene, const std::vector<std::string>& names);
   VariationalEquations(const VariationalEquations&) = delete;  // the Jacobian refers to the modes
   VariationalEquations& operator=(const VariationalEquations&) = delete;
@@ -35,7 +36,6 @@ class VariationalEquations {
   /// A name that is a parameter.
   struct Parameter {
     Eigen::Index column;  ///< of its change
-    std::string name;
     double value;
     std::vector<JointSupport> supports;  ///< the slopes of friction, angles and restitution
   };
@@ -44,6 +44,7 @@ class VariationalEquations {
   const Scene& scene() const { return scene_; }
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
+  const ParameterChoice& choice() const { return choice_; }  ///< the same, in the same order
   /// The numbers of the scene along them, in the laws that are in force.
   const std::vector<Mechanism<AlongParameters>>& mechanisms() const { return mechanisms_; }
   const MechanismAlong& mechanism_along() const { return *along_; }
@@ -79,7 +80,7 @@ class VariationalEquations {
   EquationsOfMotion equations_;
   Jacobian jacobian_;
   std::vector<Parameter> parameters_;
-  std::vector<std::string> names_of_parameters_;
+  ParameterChoice choice_;
   std::vector<int> modes_;
   std::unique_ptr<JointForces> forces_;  ///< on the joints that turn
   std::unique_ptr<MechanismAlong> along_;

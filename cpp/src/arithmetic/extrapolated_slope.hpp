@@ -11,6 +11,18 @@
 
 namespace pendcore {
 
+/// The slope of a line from values at h and h/2 to either side of `here`; nothing where they do
+/// not lie on one.
+inline std::optional<double> slope_of_line(double here, const std::array<double, 2>& ahead,
+                                           const std::array<double, 2>& behind, double h) {
+  const double rise = ahead[0] - behind[0];
+  const double rounding = 4.0 * epsilon * (std::abs(ahead[0]) + std::abs(behind[0]));
+  const double bend = (ahead[0] - here) - (here - behind[0]);
+  const double twist = rise - 2.0 * (ahead[1] - behind[1]);
+  if (std::abs(bend) <= rounding && std::abs(twist) <= rounding) return rise / (2.0 * h);
+  return std::nullopt;
+}
+
 /// Values at h, h/2, h/4 and h/8.
 inline constexpr int steps_of_slope = 4;
 

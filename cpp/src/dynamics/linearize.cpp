@@ -189,7 +189,7 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
     (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
     accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
     if (!names.empty()) {
-      const MechanismAlong along(scene, modes, t, true, names);
+      const MechanismAlong along(scene, modes, t, true, ParameterChoice(scene, names));
       along.refuse_corners();
       compiled_->by_parameters.compute(along.with_all_slopes(), t, q, qd, found.qdd,
                                        compiled_->free_joints(), found.by_parameters);

@@ -12,7 +12,6 @@
 #include "dynamics/inertia.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
-#include "pendcore/parameters.hpp"
 
 namespace pendcore {
 namespace {
@@ -91,29 +90,38 @@ bool has_other_pieces(const Scene& scene, const Scene& changed, double t, bool f
   return false;
 }
 
-/// The slopes of all numbers of a mechanism, which are `numbers`, along one of some parameters,
-/// which have these values; nothing where a law has a corner.
+/// The slopes of all numbers of a mechanism, which are `numbers`, along one of some parameters;
+/// nothing where a law has a corner.
 std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::vector<int>& modes,
                                                 const std::vector<double>& numbers, double t,
                                                 bool forward, const ParameterChoice& choice,
-                                                std::vector<double> values, std::size_t which) {
-  const double value = values[which];
+                                                std::size_t which) {
+  const double value = choice.values()[which];
   const auto numbers_at = [&](double at) {
-    Scene copy = scene;
-    values[which] = at;
-    choice.set(copy, values);
-    if (has_other_pieces(scene, copy, t, forward)) return std::vector<double>{};
-    return values_of(mechanism(copy, modes));
+    const Scene changed = choice.changed(scene, which, at);
+    if (has_other_pieces(scene, changed, t, forward)) return std::vector<double>{};
+    return values_of(mechanism(changed, modes));
   };
   std::vector<double> slopes(numbers.size());
   const auto take_slopes = [&](double h) {
     std::array<std::vector<double>, steps_of_slope> ahead, behind;
-    for (int k = 0; k < steps_of_slope; ++k) {
+    const auto take_numbers = [&](int k) {
       ahead[k] = numbers_at(value + std::ldexp(h, -k));
       behind[k] = numbers_at(value - std::ldexp(h, -k));
-      if (ahead[k].empty() || behind[k].empty()) return false;
+      return !ahead[k].empty() && !behind[k].empty();
+    };
+    if (!take_numbers(0) || !take_numbers(1)) return false;
+    std::size_t lines = 0;  // most numbers are linear in most parameters
+    for (; lines < numbers.size(); ++lines) {
+      const std::size_t i = lines;
+      const auto slope =
+          slope_of_line(numbers[i], {ahead[0][i], ahead[1][i]}, {behind[0][i], behind[1][i]}, h);
+      if (!slope) break;
+      slopes[i] = *slope;
     }
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (lines == numbers.size()) return true;
+    if (!take_numbers(2) || !take_numbers(3)) return false;
+    for (std::size_t i = lines; i < numbers.size(); ++i) {
       const auto slope = extrapolated_slope(
           numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
           {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));
@@ -137,6 +145,7 @@ std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::v
 
 std::vector<int> modes_at(const Scene& scene, double t, const double* q, const double* qd) {
   std::vector<int> modes;
+  modes.reserve(scene.effects.size());
   for (const Effect& effect : scene.effects) modes.push_back(mode_at(*effect, t, q, qd, true));
   return modes;
 }
@@ -170,19 +179,12 @@ Mechanism<double> mechanism(const Scene& scene, const std::vector<int>& modes) {
 }
 
 MechanismAlong::MechanismAlong(const Scene& scene, const std::vector<int>& modes, double t,
-                               bool forward, const std::vector<std::string>& names)
-    : names_(names), here_(mechanism(scene, modes)) {
-  const ParameterChoice choice(scene, names);
-  const std::vector<NamedNumber> known = parameters(scene);
-  std::vector<double> values;
-  values.reserve(names.size());
-  for (const std::string& name : names) {
-    values.push_back(std::ranges::find(known, name, &NamedNumber::name)->value);
-  }
+                               bool forward, const ParameterChoice& choice)
+    : names_(choice.names()), here_(mechanism(scene, modes)) {
   const std::vector<double> numbers = values_of(here_);
-  slopes_.reserve(names.size());
-  for (std::size_t which = 0; which < names.size(); ++which) {
-    const auto slopes = slopes_along(scene, modes, numbers, t, forward, choice, values, which);
+  slopes_.reserve(choice.size());
+  for (std::size_t which = 0; which < choice.size(); ++which) {
+    const auto slopes = slopes_along(scene, modes, numbers, t, forward, choice, which);
     corners_.push_back(!slopes);
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     slopes_.push_back(slopes.value_or(std::vector(numbers.size(), none)));

@@ -9,6 +9,7 @@
 
 #include "arithmetic/dual.hpp"
 #include "effects/laws.hpp"
+#include "pendcore/parameters.hpp"
 #include "pendcore/scene.hpp"
 
 namespace pendcore {
@@ -60,9 +61,8 @@ inline constexpr const char* corner_of_a_law =
 /// smooth functions of parameters, whose differences are extrapolated.
 class MechanismAlong {
  public:
-  /// Throws std::invalid_argument for a name that the scene does not have.
   MechanismAlong(const Scene& scene, const std::vector<int>& modes, double t, bool forward,
-                 const std::vector<std::string>& names);
+                 const ParameterChoice& choice);
 
   /// The mechanism with slopes along one of the parameters, counted from 0, in each direction of
   /// `Number`; along none where there is -1.

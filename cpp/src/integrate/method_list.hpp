@@ -19,7 +19,8 @@ struct MethodList {
   /// Calls use<table>() with the table of the method of that name.
   template <class Use>
   static void with(std::string_view name, const Use& use) {
-    ((tables.info.name == name ? use.template operator()<tables>() : void()), ...);
+    // The first one alone, for a caller may give what it has away.
+    ((tables.info.name == name && (use.template operator()<tables>(), true)) || ...);
   }
 };
 

@@ -115,7 +115,8 @@ std::vector<NamedNumber> parameters(const Scene& scene) {
   return result;
 }
 
-ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::string>& names) {
+ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::string>& names)
+    : names_(names) {
   const std::vector<NamedNumber> known = parameters(scene);
   for (const std::string& name : names) {
     const auto found = std::ranges::find(known, name, &NamedNumber::name);
@@ -124,6 +125,7 @@ ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::stri
                                   remedy(scene, known, name));
     }
     places_.push_back(static_cast<std::size_t>(found - known.begin()));
+    values_.push_back(found->value);
   }
 }
 
@@ -161,6 +163,14 @@ void ParameterChoice::set(Scene& copy, std::span<const double> values) const {
     }
     ++place;
   });
+}
+
+Scene ParameterChoice::changed(const Scene& scene, std::size_t which, double value) const {
+  Scene copy = scene;
+  std::vector<double> values = values_;
+  values[which] = value;
+  set(copy, values);
+  return copy;
 }
 
 }  // namespace pendcore
