@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -42,8 +43,9 @@ PENDCORE_INLINE Slopes sum_of_slopes(const AlongNames* rows, int size, int order
 struct Sizes {
   double of_change[names_at_once], last[names_at_once], before[names_at_once];
 };
-PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, double x,
-                                Sizes* sizes) {
+/// Computes them, and the slopes at the end of the step.
+PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, double x, Sizes* sizes,
+                                double* ends) {
   double power = 1.0;  // x^(order - 7)
   for (int k = 7; k < order; ++k) power *= x;
   const auto largest = [&](int begin, double at) __attribute__((always_inline)) {
@@ -58,6 +60,7 @@ PENDCORE_INLINE void find_sizes(const AlongNames* rows, int size, int order, dou
   Slopes of_change{};
   for (int i = 0; i < size; ++i) {
     const Slopes at_end = sum_of_slopes(rows, size, order, x, i);
+    store(ends + i * names_at_once, at_end);
     of_change = larger(of_change, larger(absolute(rows[i].slope), absolute(at_end)));
   }
   store(sizes->of_change, of_change);
@@ -80,6 +83,7 @@ struct ChangesBySeries::Part {
   Eigen::Index first;  ///< of the names
   int count;
   std::vector<AlongNames> rows;
+  std::vector<double> ends;  ///< the changes at the end of the step, eight of each number
 
   Part(const Mechanism<AlongNames>& mechanism, const std::vector<char>& held,
        Eigen::Index first_name, int names)
@@ -88,6 +92,7 @@ struct ChangesBySeries::Part {
   void set_order(int order, Eigen::Index size) {
     std::visit([order](auto& one) { one.set_order(order); }, series);
     rows.resize(static_cast<std::size_t>((order + 1) * size));
+    ends.resize(static_cast<std::size_t>(size) * names_at_once);
   }
   void expand(double t, double sigma, int order) {
     std::visit(
@@ -162,7 +167,7 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
         }
       }
       part.expand(t, sigma, order_);
-      const auto [has_converged, wanted] = look_at(part, changes, tolerance);
+      const auto [has_converged, wanted] = look_at(part, tolerance);
       wanted_order_ = std::max(wanted_order_, wanted);
       if (has_converged) break;
       const int order = std::max(wanted, order_ + 2);
@@ -174,17 +179,20 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
 }
 
 /// Looks at all changes that are numbers at the end of a step.
-ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Matrix& changes,
-                                                      double tolerance) const {
+ChangesBySeries::Convergence ChangesBySeries::look_at(Part& part, double tolerance) const {
   constexpr double safety = 0.1;          // for the order of the next step
   constexpr double largest_size = 1e300;  // beyond, sums may overflow
   constexpr Convergence none{.is_there = false, .wanted_order = highest_order + 1};
   static const auto measure = fastest<&find_sizes, wide_sets>();
   Sizes sizes;
-  measure(part.rows.data(), static_cast<int>(changes.rows()), order_, x_, &sizes);
+  const auto size_of_state = static_cast<int>(part.ends.size()) / names_at_once;
+  measure(part.rows.data(), size_of_state, order_, x_, &sizes, part.ends.data());
   Convergence found{.is_there = true, .wanted_order = lowest_order};
   for (int k = 0; k < part.count; ++k) {
-    if (!changes.col(part.first + k).allFinite()) continue;
+    const std::span<const AlongNames> start(part.rows.data(),
+                                            static_cast<std::size_t>(size_of_state));
+    const auto is_number = [k](const AlongNames& x) { return std::isfinite(x.slope[k]); };
+    if (!std::ranges::all_of(start, is_number)) continue;
     const double size = sizes.of_change[k];
     if (sizes.last[k] <= 0.1 * epsilon * size && size < largest_size) continue;
     const double allowed = tolerance * size;
@@ -212,12 +220,14 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(const Part& part, const Ma
   return found;
 }
 
-void ChangesBySeries::evaluate(double share, Matrix& changes) const {
+void ChangesBySeries::evaluate(double share, Matrix& changes) {
   static const auto sum = fastest<&sum_slopes, wide_sets>();
   const auto size = static_cast<int>(changes.rows());
-  std::vector<double> sums(static_cast<std::size_t>(size) * names_at_once);
+  sums_.resize(static_cast<std::size_t>(size) * names_at_once);
   for (const Part& part : parts_) {
-    sum(part.rows.data(), size, order_, share * x_, sums.data());
+    const bool at_end = share == 1.0;
+    if (!at_end) sum(part.rows.data(), size, order_, share * x_, sums_.data());
+    const double* const sums = at_end ? part.ends.data() : sums_.data();
     for (Eigen::Index i = 0; i < changes.rows(); ++i) {
       for (int k = 0; k < part.count; ++k) changes(i, part.first + k) = sums[i * names_at_once + k];
     }

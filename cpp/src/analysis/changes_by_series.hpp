@@ -31,7 +31,7 @@ class ChangesBySeries {
   bool expand(const VariationalEquations& equations, double t, const double* y, double h,
               const Matrix& changes, double tolerance);
   /// Writes the changes at a share of that step.
-  void evaluate(double share, Matrix& changes) const;
+  void evaluate(double share, Matrix& changes);
 
  private:
   struct Part;
@@ -42,9 +42,10 @@ class ChangesBySeries {
 
   void take_laws(const VariationalEquations& equations);
   void set_order(int order, Eigen::Index size);
-  Convergence look_at(const Part& part, const Matrix& changes, double tolerance) const;
+  Convergence look_at(Part& part, double tolerance) const;
 
   std::vector<Part> parts_;
+  std::vector<double> sums_;
   int laws_ = 0;  ///< VariationalEquations::changes_of_laws() of the parts
   int order_ = 0;
   int wanted_order_ = 0;
