@@ -6,7 +6,6 @@ examples are those of the descriptions, as in the docstrings.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from math import inf
 
@@ -16,6 +15,7 @@ from pendcore._run.energy import LOSSES
 from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.effect_description import CAVEATS, COLUMNS, Description
 from pendcore.effects import KINDS
+from pendcore.page.formulas import formula, formulas
 
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",
@@ -62,31 +62,12 @@ def examples(cls: type[Effect]) -> list[Effect]:
     return [eval(call, names) for call in cls.description.calls]
 
 
-LETTERS = {"tau": r"\tau", "phi": r"\varphi", "phid": r"\dot\varphi", "omega": r"\omega",
-           "rho": r"\rho", "phase": r"\psi", "qd": r"\dot q"}  # fmt: skip
-FUNCTIONS = {"sin": r"\sin", "exp": r"\exp", "sgn": r"\operatorname{sgn}"}
-WORDS = {"at", "an", "is", "of", "or", "to"}
-_WORD = re.compile(r"([A-Za-z]+)(\d*)(?:_([A-Za-z0-9]+))?([+-](?=[ ,]|$))?")
-_TEXTS = re.compile(r"(?<=\}) *\\text\{ ")
-
-
-def latex(law: str) -> str:
-    """Return a law, which the core tells in letters, in LaTeX."""
-
-    def written(found: re.Match[str]) -> str:
-        name, digit, index, sign = found.groups()
-        if name in FUNCTIONS:
-            return FUNCTIONS[name]
-        if name not in LETTERS and (len(name) > 2 or name in WORDS):
-            return rf"\text{{ {name} }}{sign or ''}"
-        below = index or digit
-        letter = LETTERS.get(name, name)
-        return letter + (f"_{{{below}}}" if below else "") + (f"^{{{sign}}}" if sign else "")
-
-    bars = re.sub(r"abs\(([^()]+)\)", r"\\lvert \1\\rvert", law)
-    told = re.sub(r"(?<![\\{])\b" + _WORD.pattern, written, bars)
-    told = re.sub(r"\^(\w)", r"^{\1}", told).replace("  ", r" \quad ")
-    return _TEXTS.sub(r"\\text{", told).replace("<=", r"\le").replace("+-", r"\pm")
+LATEX = {
+    "letter": "{}", "below": "_{{{}}}", "above": "^{{{}}}", "bars": r"\lvert {} \rvert",
+    "words": r"\text{{{}}}", "function": r"\operatorname{{{}}}", "sign": "{}",
+    "tau": r"\tau", "phid": r"\dot\varphi", "phi": r"\varphi", "omega": r"\omega",
+    "rho": r"\rho", "psi": r"\psi", "qd": r"\dot q", "<=": r"\le", "+-": r"\pm", "  ": r" \quad ",
+}  # fmt: skip
 
 
 def _page(cls: type[Effect]) -> str:
@@ -101,11 +82,8 @@ def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield ""
     yield told.sentence
     yield ""
-    first, *others = told.law.split(" | ")
-    begin = first.partition("=")[0]
-    for law in (first, *(f"or  {begin}= {other}" for other in others)):
-        yield f"$$\n{latex(law)}\n$$\n"
-    yield ""
+    for law in formulas(told.law, LATEX):
+        yield f"$$\n{law}\n$$\n"
     if told.account in CAVEATS:
         yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
         yield ""
@@ -150,7 +128,7 @@ def _table(told: Description) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     for p in told.parameters:
         default = "needed" if p.required else "none" if p.optional else f"`{p.default!r}`"
-        symbol = f"`{p.symbol}`" if p.symbol else ""
+        symbol = f"${formula(p.symbol, LATEX)}$" if p.symbol else ""
         sentence = p.sentence.replace("|", "\\|")
         yield f"| `{p.name}` | {symbol} | {p.unit} | {default} | {p.range} | {sentence} |"
     yield ""
