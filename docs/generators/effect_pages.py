@@ -44,18 +44,6 @@ def pages() -> dict[str, str]:
     return {"README.md": _index(), **found}
 
 
-def kinds_table() -> str:
-    """Return a table of the kinds, their keys and their pages."""
-    rows = ["| kind | keys | |", "|---|---|---|"]
-    for kind, cls in KINDS.items():
-        if not issubclass(cls, OwnEffect):
-            keys = ", ".join(f"`{p.name}`" for p in cls.description.parameters)
-            rows.append(
-                f"| [`{kind}`](../effects/{kind}.md) | {keys} | {cls.description.sentence} |"
-            )
-    return "\n".join(rows) + "\n"
-
-
 def examples(cls: type[Effect]) -> list[Effect]:
     """Return the effects that the examples of a kind make."""
     names = {name: getattr(pc.effects, name) for name in pc.effects.__all__} | {"inf": inf}
@@ -71,67 +59,51 @@ LATEX = {
 
 
 def _page(cls: type[Effect]) -> str:
-    return "\n".join(_sections(cls.description, cls))
+    return "\n\n".join(part.strip() for part in _parts(cls.description, cls) if part) + "\n"
 
 
-def _sections(told: Description, cls: type[Effect]) -> Iterator[str]:
+def _parts(told: Description, cls: type[Effect]) -> Iterator[str]:
     yield f"# {told.name}"
-    yield ""
     writer = "docs/generators/write_effects.py"
     yield f"<!-- Written by {writer} from what the core says of `{told.kind}`. -->"
-    yield ""
     yield told.sentence
-    yield ""
-    for law in formulas(told.law, LATEX):
-        yield f"$$\n{law}\n$$\n"
+    yield from (f"$$\n{law}\n$$" for law in formulas(told.law, LATEX))
     if told.account in CAVEATS:
         yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
-        yield ""
     conventions = "[conventions.md](../reference/conventions.md)"
     yield f"Source: {told.source}. The symbols are those of {conventions}."
-    yield ""
-    yield from _table(told)
+    yield _table(told)
     for part in dict.fromkeys(p.part for p in told.parameters if p.part):
         described = getattr(pc.effects, part).description
         yield f"`{part}`: {described.sentence}"
-        yield ""
-        yield from _table(described)
+        yield _table(described)
     if told.kind == "compiled_user":
         yield COMPILED
     else:
         yield "## In Python"
-        yield ""
         yield f"```python\n{_python(examples(cls)[0], cls)}```"
-        yield ""
-    if told.kind in MORE:
-        yield MORE[told.kind]
+    yield MORE.get(told.kind, "")
+    yield "## In a case file"
     if issubclass(cls, OwnEffect):
-        yield "## In a case file"
-        yield ""
         yield "No file can hold a function: no case file, no saved run, no pickle."
     else:
-        yield "## In a case file"
-        yield ""
         tables = "\n".join(map(_toml, examples(cls)))
         yield f"```toml\n{tables}```"
-    yield ""
-    yield "## In the ledger"
-    yield ""
-    yield BOOKED[told.account]
-    yield ""
+    yield f"## In the ledger\n\n{BOOKED[told.account]}"
     yield "[All effects](README.md)"
-    yield ""
 
 
-def _table(told: Description) -> Iterator[str]:
-    yield "| parameter | symbol | unit | default | allowed | meaning |"
-    yield "|---|---|---|---|---|---|"
+def _table(told: Description) -> str:
+    rows = [
+        "| parameter | symbol | unit | default | allowed | meaning |",
+        "|---|---|---|---|---|---|",
+    ]
     for p in told.parameters:
         default = "needed" if p.required else "none" if p.optional else f"`{p.default!r}`"
         symbol = f"${formula(p.symbol, LATEX)}$" if p.symbol else ""
         sentence = p.sentence.replace("|", "\\|")
-        yield f"| `{p.name}` | {symbol} | {p.unit} | {default} | {p.range} | {sentence} |"
-    yield ""
+        rows.append(f"| `{p.name}` | {symbol} | {p.unit} | {default} | {p.range} | {sentence} |")
+    return "\n".join(rows)
 
 
 def _python(effect: Effect, cls: type[Effect]) -> str:
@@ -162,10 +134,11 @@ def _toml(effect: Effect) -> str:
 
 def _index() -> str:
     losses = ", ".join(f"`{name}`" for name in sorted(LOSSES))
-    rows = ["| effect | kind | what it is |", "|---|---|---|"]
+    rows = ["| effect | kind | parameters | what it is |", "|---|---|---|---|"]
     for kind, cls in KINDS.items():
         told = cls.description
-        rows.append(f"| [{told.name}]({kind}.md) | `{kind}` | {told.sentence} |")
+        keys = ", ".join(f"`{p.name}`" for p in told.parameters)
+        rows.append(f"| [{told.name}]({kind}.md) | `{kind}` | {keys} | {told.sentence} |")
     table = "\n".join(rows)
     return f"""\
 # Effects
