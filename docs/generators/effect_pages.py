@@ -71,7 +71,8 @@ def _parts(told: Description, cls: type[Effect]) -> Iterator[str]:
     if told.account in CAVEATS:
         yield f"**{CAVEATS[told.account]}** {WHERE[told.account]} has more."
     conventions = "[conventions.md](../reference/conventions.md)"
-    yield f"Source: {told.source}. The symbols are those of {conventions}."
+    every = "[All effects](README.md)."
+    yield f"Source: {told.source}. The symbols are those of {conventions}. {every}"
     yield _table(told)
     for part in dict.fromkeys(p.part for p in told.parameters if p.part):
         described = getattr(pc.effects, part).description
@@ -90,7 +91,6 @@ def _parts(told: Description, cls: type[Effect]) -> Iterator[str]:
         tables = "\n".join(map(_toml, examples(cls)))
         yield f"```toml\n{tables}```"
     yield f"## In the ledger\n\n{BOOKED[told.account]}"
-    yield "[All effects](README.md)"
 
 
 def _table(told: Description) -> str:

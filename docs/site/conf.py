@@ -3,9 +3,8 @@
 The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples from their files (example_pages.py), those of the notebooks from their cells
-(notebook_pages.py), those of the gallery by running its files (gallery_pages.py). The first page
-shows a run alive (live_pages.py). Colours and sizes are the house's (house.css).
+examples and notebooks from their files (pages_of_files.py), those of the gallery by running its
+files (gallery_pages.py). The first page shows a run alive. Colours and sizes are the house's.
 Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
@@ -19,20 +18,19 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 
 import cpp_reference  # noqa: E402
-import example_pages  # noqa: E402
 import gallery_pages  # noqa: E402
 import inventories  # noqa: E402
-import live_pages  # noqa: E402
-import notebook_pages  # noqa: E402
-import pendcore  # noqa: E402
+import pages_of_files  # noqa: E402
+import pendcore as pc  # noqa: E402
 import python_reference  # noqa: E402
+from pendcore.page.html import core_for_browsers  # noqa: E402
 from pendcore.plotting import css_variables  # noqa: E402
 from sphinx.application import Sphinx  # noqa: E402
 
 project = "pendcore"
 author = "pendcore maintainers"
 copyright = "pendcore maintainers"
-version = release = pendcore.__version__
+version = release = pc.__version__
 
 extensions = [
     "myst_parser",
@@ -88,11 +86,14 @@ html_theme_options = {
 }
 
 (HERE / "_static/house.css").write_text(css_variables(when_dark='html[data-theme="dark"]'))
-live_pages.write(HERE / "_static")
+if core_for_browsers() is None:
+    raise RuntimeError("the site's first page runs the core: make page installs it")
+swing = pc.simulate(pc.Scene.textbook(), q0=[-0.6, -0.9], t_span=(0, 40))
+swing.to_html(HERE / "_static/live.html", title="The textbook's rods")
 gallery_pages.write(ROOT / "examples/gallery", ROOT / "docs/gallery", HERE)
 python_reference.write(ROOT / "docs/reference/python")
-notebook_pages.write(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
-example_pages.write(ROOT / "examples", ROOT / "docs/examples")
+pages_of_files.write_notebooks(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
+pages_of_files.write_examples(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
 
 
