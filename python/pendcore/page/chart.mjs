@@ -71,14 +71,12 @@ export class Chart {
     /** Where the pointer is, CSS pixels, and what is drawn beside the curves. */
     this.pointer = null;
     this.shown = {};
-    const point = (place) => {
-      this.pointer = place;
+    const point = ({ type, offsetX, offsetY }) => {
+      this.pointer = /down|move/.test(type) ? [offsetX, offsetY] : null;
       this.draw(this.shown);
     };
-    for (const one of ["pointerdown", "pointermove"])
-      this.canvas.addEventListener(one, ({ offsetX, offsetY }) => point([offsetX, offsetY]));
-    for (const one of ["pointerleave", "pointercancel"])
-      this.canvas.addEventListener(one, () => point(null));
+    for (const what of ["down", "move", "leave", "cancel"])
+      this.canvas.addEventListener(`pointer${what}`, point);
     this.box = [0, 1, 0, 1];
     /** All that does not move with time, drawn once, and what it was drawn for. */
     this.still = document.createElement("canvas");
