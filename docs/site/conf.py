@@ -11,6 +11,7 @@ Names in the documentation of Python, NumPy and Matplotlib are linked by the lis
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -97,6 +98,18 @@ pages_of_files.write_examples(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
 
 
+def every_picture(app: Sphinx) -> Iterator[tuple[str, dict[str, str], str]]:
+    """Yield the page that shows every picture and film of the site, in the look of the reader."""
+    shown = [
+        f'<a href="../{min(pages)}.html"><img src="../_images/{name}" alt="{min(pages)}"></a>'
+        for _, (pages, name) in sorted(app.env.images.items())
+    ]
+    films = sorted((HERE / gallery_pages.FILMS).glob("*.mp4"))
+    shown += [gallery_pages.player(x.stem, x.stem) for x in films if "_card" not in x.stem]
+    body = f'<h1>Every picture</h1><div class="films">{"".join(shown)}</div>'
+    yield "reference/pictures", {"title": "Every picture", "body": body}, "page.html"
+
+
 def quiet(app: Sphinx, failure: Exception | None) -> None:
     """Take the theme's messages out of the console of whoever reads the site."""
     if failure:
@@ -107,4 +120,5 @@ def quiet(app: Sphinx, failure: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
+    app.connect("html-collect-pages", every_picture)
     app.connect("build-finished", quiet)
