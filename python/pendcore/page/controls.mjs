@@ -135,17 +135,15 @@ export class Controls {
       return this.#field(name, unit, link[name], interval, set, { positive: true });
     };
     const { letter, dotted, angle, rate } = convention();
-    const start = (what, symbol, unit, value, largest, set) => {
-      const more = { symbol: `<i>${symbol}</i>` };
-      return this.#field(`${what} at the start`, unit, value, [-largest, largest], set, more);
-    };
+    const [ofAngle, ofRate] = [letter, dotted].map((one) => ({ symbol: `<i>${one}</i>` }));
+    const [degrees, turning] = [angle(q[i]) / DEGREE, rate(qd[i])];
     const setAngle = (x) => (q[i] = angle(x * DEGREE));
     const setRate = (x) => (qd[i] = rate(x));
     return group(`Link ${i + 1}`, [
       size("mass", "kg"),
       size("length", "m"),
-      start("angle", letter, "deg", angle(q[i]) / DEGREE, 180, setAngle),
-      start("rate", dotted, "rad/s", rate(qd[i]), 20, setRate),
+      this.#field("angle at the start", "deg", degrees, [-180, 180], setAngle, ofAngle),
+      this.#field("rate at the start", "rad/s", turning, [-20, 20], setRate, ofRate),
     ]);
   }
 
