@@ -138,11 +138,11 @@ def _toml(effect: Effect) -> str:
 
 def _index() -> str:
     losses = ", ".join(f"`{name}`" for name in sorted(LOSSES))
-    rows = ["| effect | kind | parameters | what it is |", "|---|---|---|---|"]
+    rows = ["| effect | what it is | kind | parameters |", "|---|---|---|---|"]
     for kind, cls in KINDS.items():
         told = cls.description
         keys = ", ".join(f"`{p.name}`" for p in told.parameters)
-        rows.append(f"| [{told.name}]({kind}.md) | `{kind}` | {keys} | {told.sentence} |")
+        rows.append(f"| [{told.name}]({kind}.md) | {told.sentence} | `{kind}` | {keys} |")
     table = "\n".join(rows)
     return f"""\
 # Effects
