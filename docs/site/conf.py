@@ -3,15 +3,15 @@
 The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
 while the site is built (executed.py). The pages of the Python reference come from docstrings
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples from their files (example_pages.py), those of the notebooks from their cells
-(notebook_pages.py), those of the gallery by running its files (gallery_pages.py). The first page
-shows a run alive (live_pages.py). Colours and sizes are the house's (house.css).
+examples and notebooks from their files (pages_of_files.py), those of the gallery by running its
+files (gallery_pages.py). The first page shows a run alive. Colours and sizes are the house's.
 Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -19,20 +19,19 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 
 import cpp_reference  # noqa: E402
-import example_pages  # noqa: E402
 import gallery_pages  # noqa: E402
 import inventories  # noqa: E402
-import live_pages  # noqa: E402
-import notebook_pages  # noqa: E402
-import pendcore  # noqa: E402
+import pages_of_files  # noqa: E402
+import pendcore as pc  # noqa: E402
 import python_reference  # noqa: E402
+from pendcore.page.html import core_for_browsers  # noqa: E402
 from pendcore.plotting import css_variables  # noqa: E402
 from sphinx.application import Sphinx  # noqa: E402
 
 project = "pendcore"
 author = "pendcore maintainers"
 copyright = "pendcore maintainers"
-version = release = pendcore.__version__
+version = release = pc.__version__
 
 extensions = [
     "myst_parser",
@@ -88,12 +87,27 @@ html_theme_options = {
 }
 
 (HERE / "_static/house.css").write_text(css_variables(when_dark='html[data-theme="dark"]'))
-live_pages.write(HERE / "_static")
+if core_for_browsers() is None:
+    raise RuntimeError("the site's first page runs the core: make page installs it")
+swing = pc.simulate(pc.Scene.textbook(), q0=[-0.6, -0.9], t_span=(0, 40))
+swing.to_html(HERE / "_static/live.html", title="The textbook's rods")
 gallery_pages.write(ROOT / "examples/gallery", ROOT / "docs/gallery", HERE)
 python_reference.write(ROOT / "docs/reference/python")
-notebook_pages.write(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
-example_pages.write(ROOT / "examples", ROOT / "docs/examples")
+pages_of_files.write_notebooks(ROOT / "examples/notebooks", ROOT / "docs/notebooks")
+pages_of_files.write_examples(ROOT / "examples", ROOT / "docs/examples")
 cpp_reference.write(ROOT / "cpp/include/pendcore", ROOT / "docs/reference/cpp")
+
+
+def every_picture(app: Sphinx) -> Iterator[tuple[str, dict[str, str], str]]:
+    """Yield the page that shows every picture and film of the site, in the look of the reader."""
+    shown = [
+        f'<a href="../{min(pages)}.html"><img src="../_images/{name}" alt="{min(pages)}"></a>'
+        for _, (pages, name) in sorted(app.env.images.items())
+    ]
+    films = sorted((HERE / gallery_pages.FILMS).glob("*.mp4"))
+    shown += [gallery_pages.player(x.stem, x.stem) for x in films if "_card" not in x.stem]
+    body = f'<h1>Every picture</h1><div class="films">{"".join(shown)}</div>'
+    yield "reference/pictures", {"title": "Every picture", "body": body}, "page.html"
 
 
 def quiet(app: Sphinx, failure: Exception | None) -> None:
@@ -106,4 +120,5 @@ def quiet(app: Sphinx, failure: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
+    app.connect("html-collect-pages", every_picture)
     app.connect("build-finished", quiet)

@@ -95,7 +95,7 @@ def add_film(app: Sphinx, page: str, source: list[str]) -> None:
     name = page.removeprefix("effects/")
     film = Path(app.confdir) / FILMS / f"effect_{name}.mp4"
     if page != name and film.is_file():
-        shown = _film(f"effect_{name}", name.replace("_", " "))
+        shown = player(f"effect_{name}", name.replace("_", " "))
         title, rest = source[0].split("\n", 1)
         source[0] = f"{title}\n\n```{{raw}} html\n{shown}\n```\n{rest}"
 
@@ -112,7 +112,7 @@ def _read(file: Path) -> Scene:
     return Scene(file.stem, title.rstrip("."), about.strip(), code)
 
 
-def _film(name: str, title: str) -> str:
+def player(name: str, title: str) -> str:
     """Return a film as it plays in a page; it waits where less motion is wanted."""
     return (
         f'<video class="film" src="../{FILMS}/{name}.mp4" muted loop playsinline controls '
@@ -143,7 +143,7 @@ def _page(scene: Scene) -> str:
 {scene.about}
 
 ```{{raw}} html
-{_film(scene.name, scene.title)}
+{player(scene.name, scene.title)}
 ```
 
 <p><a class="reference external" href="../{FILMS}/{scene.name}.html">Change it in your

@@ -95,7 +95,7 @@ def test_lines_like_those_to_add_stand_where_it_says() -> None:
 
 def test_the_parts_of_the_contract_that_it_names_are_there() -> None:
     elsewhere = {
-        "BOOKED": "docs/generators/effect_pages.py",
+        "BOOKED": "docs/generators/write_effects.py",
         "LOSSES": "tests/reference/rig.py",
         "SMOOTH": "tests/effects/test_ledger.py",
     }

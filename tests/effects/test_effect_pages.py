@@ -16,7 +16,6 @@ from pendcore._scene.effect_description import effects, parts
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "docs/generators"))
-import effect_pages  # noqa: E402
 import write_effects  # noqa: E402
 
 KINDS = pc.effects.kinds()
@@ -52,7 +51,7 @@ def test_the_examples_of_a_page_run_and_book_what_it_says(kind, capsys):
     assert "residual" in capsys.readouterr().out
     assert names["sol"].success
     if kind != "compiled_user":  # whose example needs the lines before it
-        assert {type(example) for example in effect_pages.examples(cls)} == {cls}
+        assert {type(example) for example in write_effects.examples(cls)} == {cls}
     tables = [table for code in shown(kind, "toml") for table in code.split("\n\n")]
     assert bool(tables) == ("user" not in kind)
     for table in tables:

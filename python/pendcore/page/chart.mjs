@@ -1,6 +1,7 @@
-/** A small chart: curves in axes with units, a shade, a line that moves along, and their names. */
+/** A small chart: curves in axes with units, their names, a line that moves along, what it reads. */
 
 import { color, drawDisc, drawLine, FONT, fitted } from "./canvas.mjs";
+import { clamp } from "./simulate.mjs";
 
 const LEFT = 56;
 const RIGHT = 12;
@@ -8,6 +9,7 @@ const TOP = 8;
 const BOTTOM = 40;
 const MOST_TICKS = 10;
 const DASH = [5, 4];
+const NEAR = 40; // CSS pixels from the pointer, within which a curve over no time is read
 
 /** Round numbers that cover an interval: some five of them. */
 function ticks(low, high) {
@@ -23,6 +25,28 @@ function label(value) {
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(0);
   return String(Number(value.toPrecision(6)));
+}
+
+function fourDigits(value) {
+  return value.toPrecision(4).replaceAll("-", "−");
+}
+
+/** The value of a curve at a time, on the straight line between two of its points. */
+function valueAt({ x, y }, t) {
+  const isBackward = x.at(-1) < x[0];
+  const found = x.findIndex((one) => (isBackward ? one <= t : one >= t));
+  const k = found < 0 ? x.length - 1 : Math.max(found, 1);
+  const part = (t - x[k - 1]) / (x[k] - x[k - 1]) || 0;
+  return y[k - 1] + part * (y[k] - y[k - 1]);
+}
+
+/** A disc on a curve, or a ring on a dashed one. */
+function drawMark(pen, place, { color: fill, isDashed }) {
+  pen.fillStyle = color(fill);
+  drawDisc(pen, place, 4);
+  if (!isDashed) return;
+  pen.fillStyle = color("panel");
+  drawDisc(pen, place, 2);
 }
 
 /** What is nearly constant gets an interval of this half width, in which its rounding is not seen. */
@@ -44,6 +68,15 @@ export class Chart {
     this.ticks = log ? (...ends) => ticks(...ends).filter(Number.isInteger) : ticks;
     this.isDown = false; // y points up, as it does not in the plane of the pendulum
     this.curves = [];
+    /** Where the pointer is, CSS pixels, and what is drawn beside the curves. */
+    this.pointer = null;
+    this.shown = {};
+    const point = ({ type, offsetX, offsetY }) => {
+      this.pointer = /down|move/.test(type) ? [offsetX, offsetY] : null;
+      this.draw(this.shown);
+    };
+    for (const what of ["down", "move", "leave", "cancel"])
+      this.canvas.addEventListener(`pointer${what}`, point);
     this.box = [0, 1, 0, 1];
     /** All that does not move with time, drawn once, and what it was drawn for. */
     this.still = document.createElement("canvas");
@@ -90,7 +123,9 @@ export class Chart {
   }
 
   /** `shade` is an interval that is shaded, `now` where the line is; `points` are marked. */
-  draw({ shade = null, now = null, points = [] } = {}) {
+  draw(shown = {}) {
+    const { shade = null, now = null, points = [] } = shown;
+    this.shown = shown;
     const { pen, width, height } = fitted(this.canvas);
     if (width === 0) return; // in a tab that is closed
     this.width = width - LEFT - RIGHT;
@@ -105,14 +140,62 @@ export class Chart {
       this.drawnFor = needed;
     }
     pen.drawImage(still, 0, 0, width, height);
-    if (now !== null) {
-      const [x] = this.#at(now, 1);
-      pen.strokeStyle = color("ink");
+    this.reading = now === null ? this.#nearest() : this.#across(now);
+    const times = now === null ? [] : [this.reading[0]?.t, now];
+    for (const [k, time] of times.entries()) {
+      const [x] = this.#at(time, 1);
+      pen.strokeStyle = color(k === 0 ? "quiet" : "ink");
       drawLine(pen, [x, TOP], [x, TOP + this.height]);
     }
-    for (const { x, y, color: fill } of points) {
-      pen.fillStyle = color(fill);
-      drawDisc(pen, this.#at(x, y), 4);
+    for (const one of [...points, ...this.reading]) drawMark(pen, this.#at(one.x, one.y), one);
+    this.#tell(pen);
+  }
+
+  /** The points of all curves at the time under the pointer, or else at the present. */
+  #across(now) {
+    const [left, right] = this.box;
+    const share = this.pointer && clamp((this.pointer[0] - LEFT) / this.width, 0, 1);
+    const t = share === null ? now : left + share * (right - left);
+    return this.curves.map((curve) => {
+      const y = valueAt(curve, t);
+      return { ...curve, x: t, y, t, told: [y] };
+    });
+  }
+
+  /** The point of a curve that is nearest to the pointer, if one is near. */
+  #nearest() {
+    let [least, found] = [NEAR, []];
+    for (const curve of this.pointer ? this.curves : []) {
+      for (const [k, x] of curve.x.entries()) {
+        const y = curve.y[k];
+        const [px, py] = this.#at(x, y);
+        const distance = Math.hypot(px - this.pointer[0], py - this.pointer[1]);
+        if (!(distance < least)) continue; // also in a gap
+        [least, found] = [distance, [{ ...curve, x, y, t: curve.t?.[k], told: [x, y] }]];
+      }
+    }
+    return found;
+  }
+
+  /** Writes what is read below the axes: the time, then values, each behind its curve's mark. */
+  #tell(pen) {
+    const { reading } = this;
+    const texts = reading.map(({ told }) => told.map(fourDigits).join(", "));
+    const time = reading[0]?.t;
+    pen.font = FONT;
+    pen.textAlign = "left";
+    const end = LEFT + this.width - pen.measureText(this.names[0]).width;
+    let [x, y] = [0, TOP + this.height + BOTTOM - 6];
+    for (const [k, text] of [
+      time === undefined ? "" : `${time.toFixed(2)} s`,
+      ...texts,
+    ].entries()) {
+      const width = pen.measureText(text).width + 22;
+      if (x + width > end) return;
+      if (k > 0) drawMark(pen, [x + 4, y - 4], reading[k - 1]);
+      pen.fillStyle = color("ink");
+      pen.fillText(text, x + 12, y);
+      x += width;
     }
   }
 

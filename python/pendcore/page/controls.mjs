@@ -1,5 +1,7 @@
 /** Sliders and fields for everything that a case has, made from the core's descriptors. */
 
+import { convention } from "./angles.mjs";
+
 function element(tag, properties = {}, children = []) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -25,10 +27,10 @@ function rounded(value, step, round) {
 
 let counter = 0;
 
-/** A name before its field, and what else belongs to it. */
+/** A name before its field, and what else belongs to it; formulas in a name are HTML. */
 function labelled(name, field, ...more) {
   field.id = `field-${++counter}`;
-  const label = element("label", { htmlFor: field.id, textContent: name });
+  const label = element("label", { htmlFor: field.id, innerHTML: name });
   return element("div", { className: "parameter" }, [label, field, ...more]);
 }
 
@@ -45,27 +47,6 @@ function interval(value, range) {
   if (both) return [Number(both[1]), Number(both[2])];
   const least = />=? ([0-9.]+)/.exec(range);
   return least ? [Number(least[1]), Number(least[1]) + size] : [-size, size];
-}
-
-const LETTERS = { tau: "τ", phid: "φ̇", phi: "φ", omega: "ω", rho: "ρ", phase: "ψ" };
-const UPRIGHT = new Set("sin exp sgn at an or is of to the air constant".split(" "));
-
-/** A law as the core tells it, in HTML: letters in italics, indices, powers, signs. */
-function formula(law) {
-  return law
-    .replaceAll("<=", "≤")
-    .replaceAll("+-", "±")
-    .replace(/abs\(([^()]+)\)/g, "|$1|")
-    .replace(/(^|[ (=])-(?=[ (|\w])/g, "$1−")
-    .replace(/[A-Za-z]+(?=[\d_^ ,;)(/+|*-]|$)/g, (word) =>
-      LETTERS[word] || (word.length < 3 && !UPRIGHT.has(word))
-        ? `<i>${LETTERS[word] ?? word}</i>`
-        : word,
-    )
-    .replace(/(<\/i>)(\d)/g, "$1<sub>$2</sub>")
-    .replace(/(<\/i>)([+-])(?=[ ,]|$)/g, "$1<sup>$2</sup>")
-    .replace(/_(?:<i>)?(\w+)(?:<\/i>)?/g, "<sub>$1</sub>")
-    .replace(/\^(?:<i>)?(\w+)(?:<\/i>)?/g, "<sup>$1</sup>");
 }
 
 function group(title, fields) {
@@ -101,7 +82,7 @@ export class Controls {
   }
 
   /** A number with a slider over an interval; `set` gets the new value. */
-  #field(name, unit, value, ends, set, { whole = false, positive = false } = {}) {
+  #field(name, unit, value, ends, set, { symbol = "", whole = false, positive = false } = {}) {
     const [low, high] = ends;
     const step = whole ? 1 : roundStep(high - low);
     const field = element("input", { type: "number", step: whole ? "1" : "any" });
@@ -126,7 +107,8 @@ export class Controls {
     };
     field.addEventListener("input", () => take(field.value, slider));
     slider.addEventListener("input", () => take(slider.value, field));
-    return labelled(unit ? `${name} (${unit.replace("^2", "²")})` : name, field, slider);
+    const inUnit = unit && `(${unit.replace("^2", "²")})`;
+    return labelled([name, symbol, inUnit].filter(Boolean).join(" "), field, slider);
   }
 
   #world(given) {
@@ -152,12 +134,16 @@ export class Controls {
       const set = (x) => scale({ [name]: x });
       return this.#field(name, unit, link[name], interval, set, { positive: true });
     };
-    const angle = q[i] / DEGREE;
+    const { letter, dotted, angle, rate } = convention();
+    const [ofAngle, ofRate] = [letter, dotted].map((one) => ({ symbol: `<i>${one}</i>` }));
+    const [degrees, turning] = [angle(q[i]) / DEGREE, rate(qd[i])];
+    const setAngle = (x) => (q[i] = angle(x * DEGREE));
+    const setRate = (x) => (qd[i] = rate(x));
     return group(`Link ${i + 1}`, [
       size("mass", "kg"),
       size("length", "m"),
-      this.#field("angle at the start", "deg", angle, [-180, 180], (x) => (q[i] = x * DEGREE)),
-      this.#field("rate at the start", "rad/s", qd[i], [-20, 20], (x) => (qd[i] = x)),
+      this.#field("angle at the start", "deg", degrees, [-180, 180], setAngle, ofAngle),
+      this.#field("rate at the start", "rad/s", turning, [-20, 20], setRate, ofRate),
     ]);
   }
 
@@ -170,7 +156,7 @@ export class Controls {
     };
     return group(`${i + 1}: ${known.name}`, [
       element("p", { className: "small", textContent: known.sentence }),
-      element("p", { className: "law", innerHTML: formula(known.law) }),
+      element("p", { className: "law", innerHTML: known.law }),
       ...this.#parameters(effect, known.parameters),
       button("Remove", remove),
     ]);
@@ -178,7 +164,7 @@ export class Controls {
 
   /** Fields for the numbers among parameters; those of a part drive what has the unit `driven`. */
   #parameters(values, parameters, driven = "") {
-    return parameters.flatMap(({ name, unit, range, type, components }) => {
+    return parameters.flatMap(({ name, symbol, unit, range, type, components }) => {
       const value = values[name];
       const part = this.kinds.find((one) => one.name === type);
       if (part && value) return this.#parameters(value, part.parameters, unit);
@@ -192,6 +178,7 @@ export class Controls {
       if (type === "pair" && value)
         return components.flatMap((one, k) => fieldOf(`${words}, ${one}`, value, k, {}));
       return fieldOf(words, values, name, {
+        symbol,
         whole: type === "int",
         positive: />(?!=)/.test(range),
       });

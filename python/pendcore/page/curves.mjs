@@ -1,5 +1,6 @@
 /** The curves beside the picture: angles, energies, work, and any variable over any other. */
 
+import { convention, wrapped } from "./angles.mjs";
 import { linkColor, partColor } from "./canvas.mjs";
 import { Chart } from "./chart.mjs";
 import { forceSizes } from "./runs.mjs";
@@ -7,25 +8,21 @@ import { clamp } from "./simulate.mjs";
 
 const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link turns by this, rad
 
-const TURN = 2 * Math.PI;
-/** The same angle from -pi to pi, rad. */
-const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
-
 /** A whole number as an index. */
 const subscript = (number) => String(number).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)]);
 
 /** What can be drawn of each link, by its number; without one it names that of all links. */
 const OF_LINKS = [
   {
-    name: (number) => `q${subscript(number)}`,
+    name: (number, told) => `${told.letter}${subscript(number)}`,
     unit: "rad",
     isAngle: true,
-    of: (_run, _t, state, i) => state[i],
+    of: (_run, _t, state, i) => convention().angle(state[i]),
   },
   {
-    name: (number) => `q̇${subscript(number)}`,
+    name: (number, told) => `${told.dotted}${subscript(number)}`,
     unit: "rad/s",
-    of: (run, _t, state, i) => state[run.n + i],
+    of: (run, _t, state, i) => convention().rate(state[run.n + i]),
   },
   {
     name: (number) => `force at joint ${number}`.trim(),
@@ -50,9 +47,10 @@ const OF_ALL = [
 
 /** The quantities for a menu: of all links together, then of each link, then of the whole. */
 function choices(n) {
+  const told = convention();
   const links = Array.from({ length: n }, (_x, i) => ({ number: i + 1, link: i }));
   const ofLinks = [{ number: "", isTogether: true }, ...links].flatMap(({ number, ...more }) =>
-    OF_LINKS.map((one) => ({ ...one, ...more, name: one.name(number) })),
+    OF_LINKS.map((one) => ({ ...one, ...more, name: one.name(number, told) })),
   );
   return [...ofLinks, ...OF_ALL].map((one) => ({ ...one, label: `${one.name} (${one.unit})` }));
 }
@@ -74,7 +72,6 @@ export class Curves {
   set(run) {
     this.run = run;
     this.#sample();
-    this.#fillMenus();
     const { times, states } = this;
     const energies = states.map((state, k) => run.energies(times[k], state));
     const curve = (name, color, rows, of) => ({ name, color, x: times, y: rows.map(of) });
@@ -89,22 +86,25 @@ export class Curves {
     });
     this.work.figure.hidden = booked.length === 0;
     this.work.set(booked);
-    this.choose();
   }
 
   /** Draws the angles of this run, and dashed those of another beside it, if there is one. */
   compare(other, name) {
+    const told = convention();
     const curves = (states, isDashed, suffix) =>
       Array.from({ length: this.run.n }, (_x, i) => ({
-        name: `q${subscript(i + 1)}${suffix}`,
+        name: `${told.letter}${subscript(i + 1)}${suffix}`,
         color: linkColor(i),
         x: this.times,
-        y: states.map((state) => (state[i] * 180) / Math.PI),
+        y: states.map((state) => (told.angle(state[i]) * 180) / Math.PI),
         isDashed,
       }));
     const own = curves(this.states, false, other ? ", this run" : "");
     const beside = other ? curves(other.states(this.times), true, `, ${name}`) : [];
+    this.angles.names[1] = `${told.letter} (deg)`;
     this.angles.set([...own, ...beside]);
+    this.#fillMenus();
+    this.choose();
   }
 
   /** Takes some times in each of the run's own steps, the more the faster it is. */
@@ -127,13 +127,15 @@ export class Curves {
 
   /** The menus keep what was chosen in them, unless a link of it is gone. */
   #fillMenus() {
-    const offered = choices(this.run.n);
-    if (offered.length === this.offered.length) return;
+    /** @type {[any[], any[]]} */
+    const [before, offered] = [this.offered, choices(this.run.n)];
+    if (offered.length === before.length && offered[0].label === before[0].label) return;
     this.offered = offered;
     for (const [k, menu] of this.menus.entries()) {
-      const before = offered.findIndex(({ label }) => label === menu.value);
+      const { of, link } = before[menu.selectedIndex] ?? {};
+      const found = offered.findIndex((one) => one.of === of && one.link === link);
       menu.replaceChildren(...offered.map(({ label }) => new Option(label)));
-      menu.selectedIndex = before < 0 ? k : before;
+      menu.selectedIndex = found < 0 ? k : found;
     }
   }
 
@@ -161,7 +163,7 @@ export class Curves {
     const last = times.findLastIndex((t) => this.isOverTime || run.isRight(t)) + 1;
     this.chosen.set(
       this.pairs.map(({ name, color, at }) => {
-        const points = states.slice(0, last).map((state, k) => at(times[k], state));
+        const points = states.slice(0, last).map((state, k) => [...at(times[k], state), times[k]]);
         return { name, color, ...torn(points, [x, y].map(isWrapped)) };
       }),
     );
@@ -180,12 +182,15 @@ export class Curves {
   }
 }
 
-/** Points as x and y, with a gap where an angle within a turn jumps. */
+/** Points as x, y and their times, with a gap where an angle within a turn jumps. */
 function torn(points, areWrapped) {
   const isJump = (k) =>
     areWrapped.some((is, axis) => is && Math.abs(points[k][axis] - points[k - 1][axis]) > Math.PI);
-  const shown = points.flatMap((point, k) => (k > 0 && isJump(k) ? [[NaN, NaN], point] : [point]));
-  return { x: shown.map(([x]) => x), y: shown.map(([, y]) => y) };
+  const shown = points.flatMap((point, k) =>
+    k > 0 && isJump(k) ? [[NaN, NaN, NaN], point] : [point],
+  );
+  const [x, y, t] = [0, 1, 2].map((axis) => shown.map((point) => point[axis]));
+  return { x, y, t };
 }
 
 /** What accuracy costs: the runs of each method, error against time. */

@@ -19,14 +19,16 @@ from pendcore.explanation.solution_text import LIMIT
 from pendcore.messages import as_json, silence, text
 from pendcore.methods import known_methods
 from pendcore.options import OPTIONS
+from pendcore.page.formulas import HTML, formula, formulas
 from pendcore.plotting import css_variables
 from pendcore.plotting.frames import moves_of
 
 CORE_MODULES = ("engine.mjs", "pendcore.mjs")
 """They stand in cpp/wasm, and are installed beside the page."""
 PAGE_MODULES = (
-    "canvas.mjs", "simulate.mjs", "scene_view.mjs", "chart.mjs", "curves.mjs", "known_case.mjs",
-    "case.mjs", "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs", "touch.mjs", "main.mjs",
+    "canvas.mjs", "angles.mjs", "simulate.mjs", "scene_view.mjs", "chart.mjs", "curves.mjs",
+    "known_case.mjs", "case.mjs", "runs.mjs", "copy.mjs", "background.mjs", "controls.mjs",
+    "touch.mjs", "main.mjs",
 )  # fmt: skip
 WORKER_MODULES = ("simulate.mjs", "worker.mjs")
 CORE = "pendcore.wasm.gz"
@@ -63,7 +65,7 @@ def page_of(solution: Solution, title: str | None = None) -> str:
         "hash": "" if has_events else solution.fingerprint,
         "valid_until": _horizon(solution, may_take_long=core is None),
         "limit": LIMIT,
-        "kinds": [x.description for x in known.values() if not x.description.is_function],
+        "kinds": [_typeset(x) for x in known.values() if not x.description.is_function],
         "options": _options(),
         "defaults": _defaults(),
         "methods": ["auto", *(x for x, one in known_methods().items() if one["error_order"] > 0)],
@@ -151,6 +153,13 @@ def _method(case: Case, solution: Solution) -> str:
         usual = simulate(*start, store="end", **tolerances).method
     is_adaptive = asked["step"] is None and not asked["compensated"]
     return "auto" if usual == solution.method and is_adaptive else solution.method
+
+
+def _typeset(kind: Any) -> Any:
+    """Return the description of an effect with its law and its symbols as formulas."""
+    told = kind.description
+    parameters = [one._replace(symbol=formula(one.symbol, HTML)) for one in told.parameters]
+    return told._replace(law="<br>".join(formulas(told.law, HTML)), parameters=parameters)
 
 
 def _options() -> list[dict[str, Any]]:

@@ -1,6 +1,7 @@
 /** The page: what is shown, and what happens when somebody touches it. */
 
 import { load } from "../../../cpp/wasm/pendcore.mjs";
+import { convention } from "./angles.mjs";
 import { Background } from "./background.mjs";
 import { addressOf, caseInAddress, parseCase, toPython, toToml, writeCase } from "./case.mjs";
 import { Chart } from "./chart.mjs";
@@ -299,8 +300,9 @@ class Page {
     this.cost.draw();
     byId("clock").textContent = `${t.toFixed(2)} s`;
     byId("time").value = String(t);
+    const { letter, angle } = convention();
     const angles = run.lengths.map(
-      (_length, i) => `q${i + 1} ${((state[i] * 180) / Math.PI).toFixed(1)} degrees`,
+      (_length, i) => `${letter}${i + 1} ${((angle(state[i]) * 180) / Math.PI).toFixed(1)} degrees`,
     );
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
@@ -348,6 +350,7 @@ class Page {
     on("forth", "click", () => this.go(this.t + STEP));
     on("time", "input", () => this.go(Number(byId("time").value)));
     on("options", "change", () => this.showBeside());
+    on("vertical", "change", () => this.controls?.show(this.given));
     on("measure", "click", () => this.#measure());
     on("quantities", "change", () => {
       this.curves.choose();

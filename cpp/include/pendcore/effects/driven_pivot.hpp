@@ -22,7 +22,7 @@ struct DrivenPivot {
       .name = "DrivenPivot",
       .kind = "driven_pivot",
       .sentence = "A pivot that is moved: a sinusoid for each axis, or a spline.",
-      .law = "x_0 = A_x sin(omega_x t + phase_x),  y_0 likewise;  or natural cubic splines",
+      .law = "x_0 = A_x sin(omega_x t + psi_x),  y_0 likewise;  or natural cubic splines",
       .source = "d'Alembert's principle",
       .account = Account::drive,
       .depends_on_time = true,

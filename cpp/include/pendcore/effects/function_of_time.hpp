@@ -36,7 +36,7 @@ struct Sinusoid {
                                                .sentence = "2 pi over the period",
                                                .required = true}),
       parameter(&Sinusoid::phase,
-                {.name = "phase", .symbol = "phi", .unit = "rad", .sentence = "phase at t = 0"}),
+                {.name = "phase", .symbol = "psi", .unit = "rad", .sentence = "phase at t = 0"}),
   };
 };
 
@@ -80,12 +80,12 @@ struct PD {
       "A controller that holds the joint at an angle: kp (reference - phi) - kd w.";
   static constexpr auto parameters = std::tuple{
       parameter(&PD::kp, {.name = "kp",
-                          .symbol = "kp",
+                          .symbol = "k_p",
                           .unit = "N m/rad",
                           .sentence = "proportional gain",
                           .required = true}),
       parameter(&PD::kd, {.name = "kd",
-                          .symbol = "kd",
+                          .symbol = "k_d",
                           .unit = "N m s/rad",
                           .sentence = "derivative gain",
                           .required = true}),

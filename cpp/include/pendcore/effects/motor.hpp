@@ -29,8 +29,8 @@ struct Motor {
       .kind = "motor",
       .sentence = "A motor in a joint: constant torque, sinusoid, table or PD controller.",
       .law =
-          "tau = constant | A sin(omega t + phase) | linear between points, or held | "
-          "kp (reference - phi) - kd w,  clipped at +-limit",
+          "tau = constant | A sin(omega t + psi) | linear between points, or held | "
+          "k_p (phi_r - phi) - k_d w,  clipped at +-limit",
       .source =
           "Spong, Hutchinson, Vidyasagar, Robot Modeling and Control (2006), section 6.3, "
           "for PD control",

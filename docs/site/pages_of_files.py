@@ -1,0 +1,60 @@
+"""Writes a page for each numbered example, and for each notebook.
+
+A page of an example says what it is about and has its lines; that of a notebook has its cells, and
+below a cell what its last line shows there. The Python of both is executed with the page, that of
+an example as if it were run from its file (executed.py).
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import shutil
+from pathlib import Path
+
+from executed import NOTEBOOK
+
+NOTEBOOKS = ("textbook_swing", "chaos_and_trust", "friction_and_stops", "saddle_transport")
+
+
+def write_examples(files: Path, folder: Path) -> None:
+    pages = {}
+    for path in sorted(files.glob("[0-9]*.py")):
+        text = path.read_text()
+        about = ast.get_docstring(ast.parse(text)) or ""
+        title = about.partition("\n")[0].rstrip(".").partition(":")[0]
+        code = text.split('"""', 2)[2].strip()
+        page = f"# {title}\n\n<!-- the file: {path} -->\n\n{about}\n\n```python\n{code}\n```\n"
+        pages[path] = title, page
+    _write(folder, "# Examples\n\nPrograms of one screen, with what they print and draw.", pages)
+
+
+def write_notebooks(files: Path, folder: Path) -> None:
+    pages = {}
+    for path in (files / f"{name}.ipynb" for name in NOTEBOOKS):
+        cells = json.loads(path.read_text())["cells"]
+        texts = ["".join(cell["source"]) for cell in cells]
+        title = texts[0].partition("\n")[0].removeprefix("# ")
+        shown = [
+            f"```python\n{text}\n```\n" if cell["cell_type"] == "code" else f"{text}\n"
+            for cell, text in zip(cells, texts, strict=True)
+        ]
+        # MyST takes a title before anything else.
+        pages[path] = title, "\n".join([*shown, f"{NOTEBOOK}\n"])
+    about = (
+        "Each can be downloaded, and is run while the site is built: what it shows is alive here."
+    )
+    _write(folder, f"# Notebooks\n\n{about}", pages)
+
+
+def _write(folder: Path, about: str, pages: dict[Path, tuple[str, str]]) -> None:
+    """Write pages, each with a title and a text, and one that lists them."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for path, (_, text) in pages.items():
+        file = f"../../examples/{'notebooks/' * (path.suffix == '.ipynb')}{path.name}"
+        (folder / f"{path.stem}.md").write_text(f"{text}\n{{download}}`{path.name} <{file}>`\n")
+    rows = "\n".join(f"* [{title}]({path.stem}.md)" for path, (title, _) in pages.items())
+    tree = "\n".join(path.stem for path in pages)
+    index = f"{about}\n\n{rows}\n\n:::{{toctree}}\n:hidden:\n\n{tree}\n:::\n"
+    (folder / "index.md").write_text(index)
