@@ -33,7 +33,7 @@ def _dense(solution: Solution, **changed: Any) -> Solution:
     dimension = 2 * len(solution.scene.links) + len(solution._run.ledger)
     size = 8 * solution.stats.accepted * (solution._run.dense_degree + 1) * dimension  # bytes
     if size > MOST_BYTES:
-        raise _refusal(solution, f"it would take {size / 2**30:.3g} GiB to do so for the drawing")
+        raise _refusal(solution, f"it would take {size / 2**30:.3g} GiB to have it")
     again = simulated_anew(solution, store="dense", **changed)
     if not (ends_alike(again, solution) if changed else _is_the_same(again, solution)):
         raise _refusal(solution, ANOTHER_COURSE)

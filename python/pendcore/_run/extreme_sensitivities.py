@@ -101,7 +101,9 @@ class _Curve:
         self.nodes = chebyshev.chebpts1(degree + 1)
         self.from_nodes = np.linalg.inv(chebyshev.chebvander(self.nodes, degree))
         steps, at_once = np.arange(len(self.t) - 1), AT_ONCE // (len(self.nodes) * len(run.y)) + 1
-        self.middle, self.reach = np.empty((2, len(steps), len(run.y)))
+        # After the last step there is one of no length, for a jump at the end of the run.
+        self.middle, self.reach = np.zeros((2, len(self.t), len(run.y)))
+        self.middle[-1] = run.y[:, -1]
         for k in range(0, len(steps), at_once):
             series = self.series(some := steps[k : k + at_once])
             self.middle[some], self.reach[some] = series[:, 0], np.abs(series[:, 1:]).sum(axis=1)
@@ -125,8 +127,6 @@ class _Curve:
         These are all highest points of the curve that the run's tolerances cannot tell from it.
         """
         best = float(np.max(sign * self.run.y[i]))
-        if len(self.t) < 2:
-            return [_Place(self.run.t_reached, sign * best)]
         highest = sign * self.middle[:, i] + self.reach[:, i]
         points: dict[int, list[_Place]] = {}
         for k in np.argsort(-highest).tolist():
@@ -151,6 +151,9 @@ class _Curve:
 
     def points(self, k: int, i: int) -> list[_Place]:
         """Return a component at the start of a step, at its turning points, and at its end."""
+        first = _Place(float(self.t[k]), float(self.run.y[i, self.after[k]]), self.width(k))
+        if k + 1 == len(self.t):
+            return [first]
         low, high = self.t[k], self.t[k + 1]
         c = chebyshev.chebtrim(self.series(np.array([k]))[0, :, i], 0)
         slope = chebyshev.chebtrim(chebyshev.chebder(c), ROUNDING * (1 + np.abs(c).sum()))
@@ -159,11 +162,11 @@ class _Curve:
         turns = turns[np.abs(turns) < 1]
         values = chebyshev.chebval(turns, c)
         inside = (0.5 * (low + high) + 0.5 * (high - low) * turns, values)
-        first, last = self.run.y[i, self.after[k]], self.run.y[i, self.before[k + 1]]
+        last = float(self.run.y[i, self.before[k + 1]])
         return [
-            _Place(float(low), float(first), self.width(k)),
+            first,
             *(_Place(float(t), float(x)) for t, x in zip(*inside, strict=True)),
-            _Place(float(high), float(last), self.width(k + 1), is_before=True),
+            _Place(float(high), last, self.width(k + 1), is_before=True),
         ]
 
     def width(self, k: int) -> float:

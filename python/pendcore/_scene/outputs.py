@@ -127,7 +127,7 @@ def _ends(scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str]) 
         if place := re.fullmatch(r"link\[(\d+)\]\.length", name):
             i = int(place[1]) - 1  # the end of this link, and those of the links beyond it
             s, c, rate = np.sin(q[..., i]), np.cos(q[..., i]), qd[..., i]
-            by_names[..., i:, k] += np.stack([c, s, -s * rate, c * rate], axis=-1)[..., np.newaxis]
+            by_names[..., i:, k] = np.stack([c, s, -s * rate, c * rate], axis=-1)[..., np.newaxis]
     return {
         kind: Rows(ends[..., 1:, i], by_state[i], by_names[..., i, :, :])
         for i, kind in enumerate(KINDS[5:])
