@@ -122,11 +122,16 @@ def test_at_an_impact_they_are_those_after_it() -> None:
 def test_what_has_no_derivative_later_has_none_there() -> None:
     grazing = E.JointStop(joint=1, range=(-9, np.pi - 0.5), restitution=0.5)
     scene = pc.Scene(links=[ROD], effects=[grazing])
+    how: Any = {"rtol": 1e-12, "atol": 1e-14}
     with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
-        sol = pc.simulate(scene, (0, 3), 0.5, sensitivities=["q0[1]"], rtol=1e-12, atol=1e-14)
+        sol = pc.simulate(scene, (0, 3), 0.5, sensitivities=["q0[1]"], **how)
     found = sol.sensitivities_at([0.5, 2.9])
     assert np.isfinite(found[0]).all()
     assert np.isnan(found[1]).all()
+    with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
+        sol = pc.simulate(scene, (0, 3), 0.5, sensitivities=["q0[1]"], t_eval=[0.5], **how)
+    with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
+        assert np.isnan(sol.sensitivities_at(2.9)).all()
 
 
 def test_bad_times_are_refused_in_the_words_of_the_run() -> None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from pendcore import _core
 from pendcore._messages.arguments import Floats
 from pendcore._messages.handed_over import forget_inner_runs
+from pendcore._messages.warning import warn
 from pendcore._run.call import resumed, run_again
 from pendcore._run.solution import Solution
 
@@ -62,8 +65,11 @@ def _simulated_anew(solution: Solution, other: dict[str, Any]) -> Solution:
     watch = _core.Sensitivities(solution.scene._compiled, list(names)) if names else None
     again = run_again(solution, watch, **changed | other)
     again.name = solution.name
-    if watch is not None:
+    known = solution.sensitivities
+    if watch is not None and known is not None:
         again.sensitivities, again.sensitivity_names = watch.values, names
+        if watch.refusal and np.isfinite(known).all():  # it is news
+            warn(watch.refusal)
     # A run that was resumed has passed events that end a run.
     while again.status == "event" and again._run.t_reached != solution._run.t_reached:
         most = max(whole + solution.success - _attempts(again), 1)

@@ -156,7 +156,7 @@ class _Curve:
             return [first]
         low, high = self.t[k], self.t[k + 1]
         c = chebyshev.chebtrim(self.series(np.array([k]))[0, :, i], 0)
-        slope = chebyshev.chebtrim(chebyshev.chebder(c), ROUNDING * (1 + np.abs(c).sum()))
+        slope = chebyshev.chebtrim(chebyshev.chebder(c), ROUNDING * np.abs(c).sum())
         roots = chebyshev.chebroots(slope)
         turns = np.sort(roots[np.abs(roots.imag) < 1e-3].real)
         turns = turns[np.abs(turns) < 1]
