@@ -24,7 +24,8 @@ from pendcore import (
 GROUPS = {
     "Scenes": ["Scene", "Link", "Linearization", "Mobility", "Explanation"],
     "Runs": [
-        "simulate", "Solution", "Statistics", "EventSensitivities", "RunError", "PendcoreWarning",
+        "simulate", "Solution", "Statistics", "EventSensitivities", "ExtremeSensitivities",
+        "RunError", "PendcoreWarning",
     ],
     "Many runs at once": ["ensemble", "Ensemble"],
     "What a run can be trusted for": [

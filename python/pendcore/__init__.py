@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from pendcore._ensemble.ensemble import Ensemble
     from pendcore._horizon.lyapunov import LyapunovExponents, lyapunov
     from pendcore._run.event_sensitivities import EventSensitivities
+    from pendcore._run.extreme_sensitivities import ExtremeSensitivities
     from pendcore._scene.linearization import Linearization
     from pendcore.cost.accuracy_cost import AccuracyCost
     from pendcore.cost.horizon import horizon_work
@@ -72,6 +73,7 @@ _WHEN_ASKED_FOR = {
     "Ensemble": "pendcore._ensemble.ensemble",
     "Equilibrium": "pendcore.orbits.equilibrium",
     "EventSensitivities": "pendcore._run.event_sensitivities",
+    "ExtremeSensitivities": "pendcore._run.extreme_sensitivities",
     "Explanation": "pendcore.explanation.explanation",
     "HorizonWork": "pendcore.cost.horizon_work",
     "Linearization": "pendcore._scene.linearization",
@@ -120,6 +122,7 @@ __all__ = [
     "ErrorEstimate",
     "EventSensitivities",
     "Explanation",
+    "ExtremeSensitivities",
     "HorizonWork",
     "LargestReaction",
     "Ledger",

@@ -174,6 +174,14 @@ def finite_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     return array
 
 
+def moments(t: npt.ArrayLike) -> Floats:
+    """Return one time, (), or several, (k,), s."""
+    times = finite_array("t", t, "s")
+    if times.ndim > 1:
+        raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
+    return times
+
+
 def real_array(name: str, value: npt.ArrayLike, unit: str) -> Floats:
     """Return real numbers of any shape, infinite ones too, as an array of floats."""
     refuse_masked(name, value)

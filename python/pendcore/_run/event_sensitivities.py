@@ -10,9 +10,8 @@ import numpy as np
 from pendcore._messages.arguments import Floats
 from pendcore._run.sensitivities import derivatives_of, sensitivities_there
 from pendcore._run.solution import Solution
-from pendcore._scene.link import Link
+from pendcore._scene.outputs import outputs_at
 from pendcore._scene.scene import Scene
-from pendcore.effects import DrivenPivot
 from pendcore.events import Event, Found, Function, JointAngle, LinkAngle, RateZero, TipLine
 
 BESIDE = 1e-10
@@ -127,29 +126,25 @@ def _slopes(
     event: Event, one: Found, scene: Scene, names: tuple[str, ...]
 ) -> tuple[Floats, Floats, float]:
     """Return the derivatives of an event's function by the state, (2n,), by the names and by t."""
-    n, none = len(scene.links), np.zeros(len(names))
-    by_state = np.zeros(2 * n)
+    n, by_time = len(scene.links), 0.0
     match event:
-        case LinkAngle(link):
-            by_state[link - 1] = 1
-        case JointAngle(joint):
-            _set_relative(by_state[:n], joint)
-        case RateZero(joint=None, link=int(link)):
-            by_state[n + link - 1] = 1
-        case RateZero(joint=int(joint)):
-            _set_relative(by_state[n:], joint)
-        case TipLine(normal=normal):
-            return _of_the_line(np.array(normal), one, scene, names)
         case Function(f):
             slope = _differences(lambda x: float(f(x[0], x[1 : 1 + n], x[1 + n :])), one)
-            return slope[1:], none, float(slope[0])
-    return by_state, none, 0.0
-
-
-def _set_relative(by: Floats, joint: int) -> None:
-    by[joint - 1] = 1
-    if joint > 1:
-        by[joint - 2] = -1
+            return slope[1:], np.zeros(len(names)), float(slope[0])
+        case LinkAngle(link):
+            shares = {f"q[{link}]": 1.0}
+        case JointAngle(joint):
+            shares = {f"phi[{joint}]": 1.0}
+        case RateZero(joint=None, link=link):
+            shares = {f"qd[{link}]": 1.0}
+        case RateZero(joint=joint):
+            shares = {f"phid[{joint}]": 1.0}
+        case TipLine(normal=normal):
+            shares = {f"x[{n}]": normal[0], f"y[{n}]": normal[1]}
+            by_time = float(normal @ scene.velocities(one.t, one.q, one.qd)[0])  # of the pivot
+    there = outputs_at(scene, np.asarray(one.t), one.y, names, [*shares])
+    share = np.array([*shares.values()])
+    return share @ there.by_state, share @ there.by_names, by_time
 
 
 def _differences(f: Callable[[Floats], float], one: Found) -> Floats:
@@ -161,30 +156,3 @@ def _differences(f: Callable[[Floats], float], one: Found) -> Floats:
         above[i], below[i] = x[i] + by, x[i] - by
         found[i] = (f(above) - f(below)) / (above[i] - below[i])
     return found
-
-
-def _of_the_line(
-    normal: Floats, one: Found, scene: Scene, names: tuple[str, ...]
-) -> tuple[Floats, Floats, float]:
-    """Return the derivatives of normal . tip, of links that are as long with a pivot that moves so.
-
-    Whatever else acts on the links is left out, and so is a place where it has no derivative.
-    """
-    drives = {i: x for i, x in enumerate(scene.effects, 1) if isinstance(x, DrivenPivot)}
-    renamed = {f"effect[{i}].": f"effect[{place}]." for place, i in enumerate(drives, 1)}
-    bare = Scene(
-        links=[Link(mass=1.0, length=link.length) for link in scene.links],
-        effects=list(drives.values()),
-    )
-    inputs = {}
-    for column, name in enumerate(names):
-        first, dot, rest = name.partition(".")
-        new = renamed.get(first + dot, first + dot) + rest
-        if (first + dot in renamed and rest) or (first.startswith("link") and rest == "length"):
-            inputs[column] = new
-    tip = [f"{axis}[{len(scene.links)}]" for axis in "xy"]
-    place = bare.linearize(one.q, one.qd, one.t, inputs=inputs.values(), outputs=tip)
-    by_names = np.zeros(len(names))
-    by_names[list(inputs)] = normal @ place.D
-    pivot = bare.velocities(one.t, one.q, one.qd)[0]
-    return normal @ place.C, by_names, float(normal @ pivot)

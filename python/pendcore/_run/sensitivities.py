@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats
+from pendcore._messages.arguments import Floats, moments
 from pendcore._run.call import run_again
+from pendcore._run.dense_output import ANOTHER_COURSE, ends_alike, simulated_anew
 from pendcore._run.solution import Solution
 
 TIGHTEST = 1e-12
@@ -32,14 +34,53 @@ def sensitivities_there(solution: Solution) -> Floats:
     return solution.sensitivities
 
 
+def sensitivities_at(solution: Solution, t: npt.ArrayLike) -> Floats:
+    """See `Solution.sensitivities_at`."""
+    sensitivities_there(solution)
+    times = times_within(solution, t)
+    found, _ = along(solution, times.reshape(-1))
+    return found[0] if times.ndim == 0 else found
+
+
+def times_within(solution: Solution, t: npt.ArrayLike) -> Floats:
+    """Return one time, (), or several, (k,), of a run; refuse others in the words of ``sol(t)``."""
+    times = moments(t)
+    (start, _), end = solution.t_span, solution.t_reached
+    outside = times[(times < min(start, end)) | (times > max(start, end))]
+    if outside.size:
+        told = f"must be within the run, {start!r} to {end!r} s"
+        raise ValueError(f"t = {outside.flat[0].item()!r}: {told}")
+    return times
+
+
+def along(solution: Solution, times: Floats) -> tuple[Floats, Floats]:
+    """Return the sensitivities (k, 2n, m) and the states (k, 2n) at times of a run, (k,).
+
+    The run is made again with its own steps; at a jump they are those after it.
+    """
+    grid, places = _in_order(solution, times)
+    if not len(grid):
+        dimension = 2 * len(solution.scene.links)
+        return np.empty((0, dimension, len(solution.sensitivity_names))), np.empty((0, dimension))
+    again = simulated_anew(solution, t_eval=grid, store="times")
+    if not ends_alike(again, solution):
+        raise ValueError(f"the run has no sensitivities at other times: {ANOTHER_COURSE}")
+    return sensitivities_there(again)[places], again.y.T[places]
+
+
+def _in_order(solution: Solution, t: Floats) -> tuple[Floats, npt.NDArray[np.intp]]:
+    """Return times as the run goes, each once, and the place of each of ``t`` among them."""
+    times, places = np.unique(t, return_inverse=True)
+    start, end = solution.t_span
+    return (times, places) if end >= start else (times[::-1], len(times) - 1 - places)
+
+
 def errors_of(solution: Solution) -> Floats:
     """See `Solution.sensitivity_errors`."""
     known = sensitivities_there(solution)
     if not len(solution.t):
         return np.empty((0, len(solution.sensitivity_names)))
-    times, places = np.unique(solution.t, return_inverse=True)
-    if solution.t[-1] < solution.t[0]:  # as the run goes: backward
-        times, places = times[::-1], len(times) - 1 - places
+    times, places = _in_order(solution, solution.t)
     grid = _with_moments_around_the_end(times, solution._run.arguments["t_start"])
     watch, other = derivatives_of(
         solution, solution.sensitivity_names, **_more_exact(solution._run.arguments),

@@ -7,6 +7,7 @@ y points **down**. Nothing is computed before it is asked for: methods import wh
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, finite_array, text, whole_number
+from pendcore._messages.arguments import Floats, finite_array, moments, text, whole_number
 from pendcore._messages.progress import Progress
 from pendcore._run.accuracy import Accuracy
 from pendcore._run.energy import Energy, energy_over
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from pendcore._horizon.lyapunov import LyapunovExponents
     from pendcore._run.energy_drift import EnergyDrift
     from pendcore._run.event_sensitivities import EventSensitivities
+    from pendcore._run.extreme_sensitivities import ExtremeSensitivities
     from pendcore.page.notebook import NotebookPage
     from pendcore.plotting.plot import What
 
@@ -174,9 +176,7 @@ class Solution:
         >>> sol([0.0, 2.5, 5.0]).shape
         (4, 3)
         """
-        times = finite_array("t", t, "s")
-        if times.ndim > 1:
-            raise ValueError(f"t: shape {times.shape}: must be a number or (k,) (s)")
+        times = moments(t)
         states = self._run.evaluate(times.reshape(-1)).T
         return states[:, 0] if times.ndim == 0 else states
 
@@ -519,6 +519,95 @@ class Solution:
 
         return errors_of(self)
 
+    def sensitivities_at(self, t: npt.ArrayLike) -> Floats:
+        """Return the sensitivities at any time within the run, d(q, qd)/d(name).
+
+        The run is made again with its own steps, whatever it kept, and is known at these times as
+        well as at its steps. At a jump they are those after it, as in ``sol(t)``.
+
+        Parameters
+        ----------
+        t : float or array_like, (k,)
+            s, in any order.
+
+        Returns
+        -------
+        ndarray, (2n, m) or (k, 2n, m)
+            For the m names of ``sensitivity_names``, rad and rad/s per unit of what is named.
+
+        Raises
+        ------
+        ValueError
+            If a time lies outside the run, the run has no sensitivities, or it takes another course
+            when it is made again, because a function of the user's gives other values now.
+
+        Examples
+        --------
+        >>> names = ["q0[1]", "gravity"]
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, sensitivities=names)
+        >>> sol.sensitivities_at(2.5)[:2].round(3)  # of both angles, by each name
+        array([[ 0.99 ,  0.058],
+               [ 0.169, -0.056]])
+        >>> sol.sensitivities_at([2.5, 1.0]).shape
+        (2, 4, 2)
+        """
+        from pendcore._run.sensitivities import sensitivities_at
+
+        return sensitivities_at(self, t)
+
+    def output_sensitivities(
+        self, outputs: Iterable[str], t: npt.ArrayLike | None = None
+    ) -> Floats:
+        """Return how places, velocities and energies change with each name, at fixed times.
+
+        With S the sensitivities and h an output, that is ``h_y S + h_p``: a longer link moves the
+        tip at the same angles, too.
+
+        Parameters
+        ----------
+        outputs : iterable of str, p of them
+            Those of `Scene.linearize`: ``"x[2]"``, ``"vy[1]"``, ``"phi[2]"``, ``"energy"``, ...
+        t : float or array_like, (k,), optional
+            Times within the run, s, as in `sensitivities_at`. Default: the kept times.
+
+        Returns
+        -------
+        ndarray, (n_t, p, m); (k, p, m) or (p, m) with ``t``
+            m, m/s, J, ... per unit of each of the m names of ``sensitivity_names``. NaN where the
+            sensitivities have none.
+
+        Raises
+        ------
+        ValueError
+            If the run has no sensitivities, an output is not known, or a time lies outside the run.
+
+        Warns
+        -----
+        PendcoreWarning
+            If ``"qdd[1]"`` is asked for and `Scene.linearize` refuses some of the states: at a
+            stop, in a joint at rest under dry friction. There it is NaN.
+
+        Notes
+        -----
+        Energies are polynomials and sines of all that they depend on, so that differences of a few
+        of their values are exact to rounding.
+
+        Examples
+        --------
+        >>> names = ["q0[1]", "link[2].length"]
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 2), 0.5, sensitivities=names)
+        >>> by = sol.output_sensitivities(["x[2]", "energy"])
+        >>> by.shape == (len(sol.t), 2, 2)
+        True
+        >>> by[-1, 1].round(4)  # J/rad, J/m: nothing takes energy out, so they are as at the start
+        array([-12.9097,  -2.3509])
+        >>> (-9.807 * np.array([1.5 * np.cos(0.5), 0.5 * np.sin(0.5)])).round(4)
+        array([-12.9097,  -2.3509])
+        """
+        from pendcore._run.output_sensitivities import output_sensitivities
+
+        return output_sensitivities(self, outputs, t)
+
     def event_sensitivities(self) -> list[EventSensitivities]:
         """Find how the times of events, and the states there, change with each name.
 
@@ -557,6 +646,41 @@ class Solution:
         from pendcore._run.event_sensitivities import sensitivities_at_events
 
         return sensitivities_at_events(self)
+
+    def extreme_sensitivities(self) -> ExtremeSensitivities:
+        """Find the least and the greatest angles and rates, and how they change with each name.
+
+        Where a component turns back, its derivative is the sensitivity there, whatever its time
+        does. Where it is extreme at an impact, or where a law changes, that time moves by dt, and
+        with the rates of change f before and after it, what is continuous tells by how much:
+        ``dt = -(S_after - S_before) / (f_after - f_before)``; the derivative is ``S + f dt``. The
+        ends of the run are fixed, but for one at which an event ended it.
+
+        Returns
+        -------
+        ExtremeSensitivities
+            ``values`` and ``t``, (2, 2n), and ``sensitivities``, (2, 2n, m). Derivatives are NaN
+            where a component is as small, or as large, at several places by the run's tolerances,
+            and these change differently, and where the sensitivities have none.
+
+        Raises
+        ------
+        ValueError
+            If the run has no sensitivities, or cannot be had again: see `with_dense_output`.
+
+        Examples
+        --------
+        >>> names = ["q0[1]", "link[1].length"]
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 5), 0.5, sensitivities=names)
+        >>> found = sol.extreme_sensitivities()
+        >>> f"link 1 comes to {found.values[1, 0]:.3f} rad at {found.t[1, 0]:.3f} s"
+        'link 1 comes to 2.686 rad at 3.744 s'
+        >>> found.sensitivities[1, 0].round(3)  # rad/rad, rad/m
+        array([-0.739,  0.105])
+        """
+        from pendcore._run.extreme_sensitivities import sensitivities_at_extremes
+
+        return sensitivities_at_extremes(self)
 
     def lyapunov(
         self,

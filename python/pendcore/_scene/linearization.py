@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -14,7 +14,6 @@ from pendcore import _core
 from pendcore._messages.arguments import Floats, listed_names, positive, whole_number
 
 _TORQUE = re.compile(r"torque\[(\d+)\]")
-_OUTPUT = re.compile(r"(q|qd|qdd|phi|phid|x|y|vx|vy)\[(\d+)\]")
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -170,64 +169,3 @@ def state_as_output(n: int, inputs: int) -> tuple[Floats, Floats, tuple[str, ...
     C, D = np.eye(2 * n), np.zeros((2 * n, inputs))
     C.flags.writeable = D.flags.writeable = False
     return C, D, tuple(f"{kind}[{i}]" for kind in ("q", "qd") for i in range(1, n + 1))
-
-
-def output_rows(
-    system: Linearization, lengths: Floats, ends: Floats, ends_by: Floats, outputs: tuple[str, ...]
-) -> tuple[Floats, Floats, Floats]:
-    """Return C, D and the values of outputs at the state of a system whose outputs are the state.
-
-    ``ends`` are x, y, vx and vy of the ends of the links, (4, n), and ``ends_by`` their derivatives
-    by the inputs, (4, n, k).
-    """
-    n = len(lengths)
-    q, qd = np.split(system.x, 2)
-    on_q, on_qd = np.split(np.eye(2 * n), 2)
-    on_qdd, by_input = system.A[n:], system.B[n:]
-    # u = (cos q, sin q) along each link; the end of link i moves with all links up to i.
-    up_to = np.tri(n) * lengths
-    along_x, along_y = up_to * np.cos(q), up_to * np.sin(q)
-    joint = np.eye(n) - np.eye(n, k=-1)
-    none = np.zeros_like(by_input)
-    kinds = {
-        "q": (q, on_q, none),
-        "qd": (qd, on_qd, none),
-        "qdd": (system.drift[n:], on_qdd, by_input),
-        "phi": (joint @ q, joint @ on_q, none),
-        "phid": (joint @ qd, joint @ on_qd, none),
-        "x": (ends[0], -along_y @ on_q, ends_by[0]),
-        "y": (ends[1], along_x @ on_q, ends_by[1]),
-        "vx": (ends[2], -(along_x * qd) @ on_q - along_y @ on_qd, ends_by[2]),
-        "vy": (ends[3], -(along_y * qd) @ on_q + along_x @ on_qd, ends_by[3]),
-    }
-    C, D = np.zeros((len(outputs), 2 * n)), np.zeros((len(outputs), by_input.shape[1]))
-    there = np.zeros(len(outputs))
-    for row, name in enumerate(outputs):
-        place = _OUTPUT.fullmatch(name) if isinstance(name, str) else None
-        if place is None or not 1 <= int(place[2]) <= n:
-            listed = ", ".join(f"{kind}[i]" for kind in kinds)
-            raise ValueError(f"outputs: {name!r}: must be one of {listed}, i from 1 to {n}")
-        there[row], C[row], D[row] = (each[int(place[2]) - 1] for each in kinds[place[1]])
-    return C, D, there
-
-
-def ends_by_parameter(effects: Sequence[Any], name: str, t: float, x: Floats) -> Floats:
-    """Return the derivatives of x, y, vx and vy of the ends of the links by a parameter, (4, n)."""
-    q, qd = np.split(x, 2)
-    found = np.zeros((4, len(q)))
-    if place := re.fullmatch(r"link\[(\d+)\]\.length", name):
-        i = int(place[1]) - 1  # the end of this link, and those of the links beyond it
-        s, c = np.sin(q[i]), np.cos(q[i])
-        found[:, i:] = np.array([[c], [s], [-s * qd[i]], [c * qd[i]]])
-    elif place := re.fullmatch(r"effect\[(\d+)\]\.([xy])\.(\w+)", name):  # of a driven pivot
-        wave = getattr(effects[int(place[1]) - 1], place[2])
-        A, w, phase = wave.amplitude, wave.angular_frequency, wave.phase
-        s, c = np.sin(w * t + phase), np.cos(w * t + phase)
-        slopes = {
-            "amplitude": (s, w * c),
-            "angular_frequency": (A * t * c, A * c - A * w * t * s),
-            "phase": (A * c, -A * w * s),
-        }
-        axis = "xy".index(place[2])
-        found[axis], found[axis + 2] = slopes[place[3]]
-    return found

@@ -323,7 +323,8 @@ class Scene:
         outputs : iterable of str, optional
             ``"q[1]"``, ``"qd[1]"``, ``"qdd[1]"`` of a link; ``"phi[2]"``, ``"phid[2]"`` of a joint,
             relative to the link before; ``"x[2]"``, ``"y[2]"``, ``"vx[2]"``, ``"vy[2]"`` of the end
-            of a link. The state, unless given. Where ``"pivot.x"`` or ``"pivot.y"`` is an input,
+            of a link; ``"kinetic"``, ``"potential"`` and their sum, ``"energy"``, J. The state,
+            unless given. Where ``"pivot.x"`` or ``"pivot.y"`` is an input,
             places and velocities change relative to the pivot.
         torques : array_like, (k,), optional
             Torques that are held in the joints of ``inputs`` at that state, N m: those of `trim`
@@ -369,13 +370,11 @@ class Scene:
         system = linearization.Linearization(A, B, C, D, drift, x, x, names, of_state)
         if outputs is None:
             return system
+        from pendcore._scene.outputs import Rows, outputs_at
+
         wanted = linearization.different_names("outputs", outputs)
-        lengths, (angles, rates) = np.array([link.length for link in self.links]), np.split(x, 2)
-        places = self.positions(t, angles), self.velocities(t, angles, rates)
-        by = [linearization.ends_by_parameter(self.effects, name, t, x) for name in names]
-        ends_by = np.stack(by, axis=-1) if by else np.zeros((4, n, 0))
-        ends = np.hstack(places)[1:].T
-        C, D, values = linearization.output_rows(system, lengths, ends, ends_by, wanted)
+        qdd = Rows(drift[n:], A[n:], B[n:])
+        values, C, D = outputs_at(self, np.asarray(t), x, names, wanted, qdd)
         return replace(system, C=C, D=D, outputs_there=values, outputs=wanted)
 
     def inverse_dynamics(

@@ -1,0 +1,157 @@
+"""Derivatives at any time of a run: the bits of those it kept, however it was run and ended."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pendcore as pc
+import pytest
+from pendcore.methods import known_methods
+
+E, V = pc.effects, pc.events
+ROD = pc.Link(mass=1.0, length=1.0)
+TEXTBOOK = pc.Scene.textbook()
+STOP = E.JointStop(joint=1, range=(-9, 1.2), restitution=0.5)
+BOUNCING = pc.Scene(links=[ROD], effects=[STOP])
+RUBBING = pc.Scene(links=[ROD], effects=[E.DryJointFriction(joint=1, coulomb=2.0)])
+DRAGGED = TEXTBOOK.replace(
+    effects=[E.RodDrag(link=1, drag_coefficient=1.2, diameter=0.05)]  # has no Taylor series
+)
+NAMES = ["q0[1]", "gravity", "link[1].length"]
+
+
+def test_a_rod_that_turns_freely() -> None:
+    """The angle is q0 + w t, at times in any order."""
+    sol = pc.simulate(pc.Scene(links=[ROD], gravity=0.0), (1, 4), 0.2, 3.0,
+                      sensitivities=["qd0[1]", "q0[1]"])  # fmt: skip
+    times = np.array([2.5, 4.0, 1.0, 2.5, 1.7])
+    found = sol.sensitivities_at(times)
+    assert found.shape == (5, 2, 2)
+    np.testing.assert_allclose(found[:, 0], np.stack([times - 1, np.ones(5)], axis=1), rtol=1e-13)
+    np.testing.assert_array_equal(found[:, 1], np.tile([1.0, 0.0], (5, 1)))
+    np.testing.assert_array_equal(found[0], found[3])
+    np.testing.assert_array_equal(sol.sensitivities_at(1.7), found[4])
+    assert sol.sensitivities_at([]).shape == (0, 2, 2)
+
+
+@pytest.mark.parametrize("method", known_methods())
+@pytest.mark.parametrize("scene", [TEXTBOOK, DRAGGED, BOUNCING], ids=["free", "drag", "stop"])
+def test_kept_times_have_the_bits_that_were_kept(scene: pc.Scene, method: str) -> None:
+    step = 1e-2 if method == "rk4" else None
+    sol = pc.simulate(scene, (0, 2), 0.5, sensitivities=NAMES, method=method, step=step)
+    assert sol.sensitivities is not None
+    before = sol.fingerprint
+    after_jumps = np.append(np.diff(sol.t) > 0, True)
+    assert after_jumps.all() == (scene is not BOUNCING)
+    found = sol.sensitivities_at(sol.t)[after_jumps]
+    np.testing.assert_array_equal(found, sol.sensitivities[after_jumps])
+    assert sol.fingerprint == before
+
+
+BOTTOM = V.LinkAngle(1, 1.1, terminal=True)
+ENDS: dict[str, Any] = {
+    "to the end": ("finished", TEXTBOOK, (0, 2), {}),
+    "back in time": ("finished", TEXTBOOK, (3, 0), {}),
+    "no length": ("finished", TEXTBOOK, (1, 1), {}),
+    "to an event": ("event", TEXTBOOK, (0, 2), {"events": [BOTTOM]}),
+    "back to an event": ("event", TEXTBOOK, (3, 0), {"events": [BOTTOM]}),
+    "to an event at an impact": (
+        "event", BOUNCING, (0, 3), {"events": [V.LinkAngle(1, 1.2, terminal=True)]},
+    ),
+    "to rest": ("at_rest", RUBBING, (0, 30), {}),
+    "some steps": ("max_steps", BOUNCING, (0, 3), {"max_steps": 5}),
+    "no step": ("max_steps", TEXTBOOK, (0, 3), {"max_steps": 1, "first_step": 1.0}),
+    "some time": ("time_limit", TEXTBOOK, (0, 1e6), {"time_limit": 0.02, "rtol": 1e-3}),
+    "verified": ("finished", TEXTBOOK, (0, 2), {"error": 1e-8}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("store", ["dense", "steps", "end"])
+@pytest.mark.parametrize("end", ENDS)
+def test_however_a_run_ended_and_whatever_it_kept(end: str, store: str, tmp_path: Path) -> None:
+    status, scene, span, how = ENDS[end]
+    sol = pc.simulate(scene, span, 1.0, sensitivities=NAMES, store=store, on_failure="ignore",
+                      **how)  # fmt: skip
+    assert sol.sensitivities is not None
+    assert sol.status == status
+    there = [sol.t_span[0], sol.t_reached]
+    at_start, at_end = sol.sensitivities_at(there)
+    np.testing.assert_array_equal(at_end, sol.sensitivities[-1])
+    if store != "end":
+        np.testing.assert_array_equal(at_start, sol.sensitivities[0])
+    beyond = sol.t_reached + 1e-3 * (1 if span[1] >= span[0] else -1)
+    with pytest.raises(ValueError, match="must be within the run"):
+        sol.sensitivities_at(beyond)
+    sol.save(tmp_path / "run.npz")
+    again = pc.load(tmp_path / "run.npz").sensitivities_at(there)
+    np.testing.assert_array_equal(again, [at_start, at_end])
+
+
+@pytest.mark.parametrize("scene", [TEXTBOOK, BOUNCING, DRAGGED], ids=["free", "stop", "drag"])
+@pytest.mark.parametrize("span", [(0, 2), (2, 0)], ids=["forward", "back"])
+def test_between_the_steps_they_are_those_of_a_run_that_keeps_these_times(
+    scene: pc.Scene, span: Any
+) -> None:
+    if span[0] > 0 and scene is BOUNCING:
+        scene = BOUNCING.replace(effects=[STOP.replace(restitution=1.0)])
+    times = np.linspace(*span, 37)
+    kept = pc.simulate(scene, span, 0.5, sensitivities=NAMES, t_eval=times)
+    assert kept.sensitivities is not None
+    sol = pc.simulate(scene, span, 0.5, sensitivities=NAMES)
+    np.testing.assert_array_equal(sol.sensitivities_at(times[::-1])[::-1], kept.sensitivities)
+    alone = kept.sensitivities_at(times[20])
+    if scene is DRAGGED:  # by collocation, the times within a step cut it
+        assert 0 < np.abs(alone - kept.sensitivities[20]).max() < 1e-12
+    else:
+        np.testing.assert_array_equal(alone, kept.sensitivities[20])
+
+
+def test_at_an_impact_they_are_those_after_it() -> None:
+    sol = pc.simulate(BOUNCING, (0, 0.5), 0.5, sensitivities=NAMES)
+    assert sol.sensitivities is not None
+    (at,) = np.flatnonzero(np.diff(sol.t) == 0)
+    found = sol.sensitivities_at(np.nextafter(sol.t[at], [0, sol.t[at], 9]))
+    size = np.abs(sol.sensitivities[at]).max()
+    np.testing.assert_allclose(found[0], sol.sensitivities[at], rtol=0, atol=1e-12 * size)
+    np.testing.assert_array_equal(found[1], sol.sensitivities[at + 1])
+    assert np.abs(found[1] - found[0]).max() > 0.1
+
+
+def test_what_has_no_derivative_later_has_none_there() -> None:
+    grazing = E.JointStop(joint=1, range=(-9, np.pi - 0.5), restitution=0.5)
+    scene = pc.Scene(links=[ROD], effects=[grazing])
+    how: Any = {"rtol": 1e-12, "atol": 1e-14}
+    with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
+        sol = pc.simulate(scene, (0, 3), 0.5, sensitivities=["q0[1]"], **how)
+    found = sol.sensitivities_at([0.5, 2.9])
+    assert np.isfinite(found[0]).all()
+    assert np.isnan(found[1]).all()
+    with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
+        sol = pc.simulate(scene, (0, 3), 0.5, sensitivities=["q0[1]"], t_eval=[0.5], **how)
+    with pytest.warns(pc.PendcoreWarning, match="sensitivities: none after"):
+        assert np.isnan(sol.sensitivities_at(2.9)).all()
+
+
+def test_bad_times_are_refused_in_the_words_of_the_run() -> None:
+    sol = pc.simulate(TEXTBOOK, (2, 0.5), 0.5, sensitivities=["gravity"])
+    for bad in (0.4, 2.5, [1.0, -3.0], np.nan, [[1.0]], "1", [True]):
+        with pytest.raises((ValueError, TypeError)) as said:
+            sol(bad)
+        with pytest.raises(type(said.value)) as told:
+            sol.sensitivities_at(bad)
+        assert str(told.value) == str(said.value)
+
+
+def test_runs_without_derivatives_or_of_another_course_have_none() -> None:
+    with pytest.raises(ValueError, match="the run has no sensitivities"):
+        pc.simulate(TEXTBOOK, (0, 1), 0.5).sensitivities_at(0.5)
+    damping = [0.1]
+    moody = E.User(function=lambda t, q, qd: -damping[0] * qd)
+    scene = TEXTBOOK.replace(effects=[moody])
+    sol = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"])
+    assert np.isfinite(sol.sensitivities_at(0.5)).all()
+    damping[0] = 0.2
+    with pytest.raises(ValueError, match="simulated anew it takes another course"):
+        sol.sensitivities_at(0.5)
