@@ -123,6 +123,21 @@ def test_a_pivot_that_is_pushed_is_gravity_turned(links: int, more: list[E.Effec
     np.testing.assert_allclose(by("pivot.x", 0.0, start), across, rtol=1e-9, atol=1e-11)
 
 
+@pytest.mark.parametrize("method", ["auto", "dopri5", "dop853", "taylor", "radau5"])
+@pytest.mark.parametrize("links", [1, 2, 4])
+def test_a_chain_at_rest_has_nothing_but_rounding(links: int, method: str) -> None:
+    """Changes by parameters of a chain that hangs are zero, but for the run's own errors."""
+    effects: list[E.Effect] = [E.ViscousJoint(joint=1, damping=0.1)]
+    names = ["gravity", "link[1].mass", f"link[{links}].length", "effect[1].damping"]
+    if links > 1:
+        effects.append(E.TorsionalSpring(joint=links, stiffness=0.5))
+        names.append("effect[2].stiffness")
+    scene = pc.Scene(links=[pc.Link(mass=1.3, length=0.7)] * links, effects=effects)
+    sol = pc.simulate(scene, (0, 4), np.pi / 2, method=method, sensitivities=names)
+    assert sol.sensitivities is not None
+    assert np.abs(sol.sensitivities).max() < 1e-8
+
+
 def test_a_chain_of_many_links_keeps_within_its_memory() -> None:
     """Effects of joints beyond the second once had places in rows of two: processes crashed."""
     n = 200

@@ -58,8 +58,9 @@ struct Sensitivities::Variation {
   int points_at_once = 8;
   bool has_points_to_spare = false;
   std::vector<double> thetas{}, states{}, decay{};
-  Vector floor{};     ///< what rounding alone makes of d qdd/d p, (k)
-  int cuts_left = 0;  ///< into which the step may still be cut
+  Vector floor{};            ///< what rounding alone makes of d qdd/d p, (k), by epsilon
+  Vector sizes_elsewhere{};  ///< once they have been needed
+  int cuts_left = 0;         ///< into which the step may still be cut
   Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
   bool has_started = false;
@@ -94,7 +95,11 @@ bool Sensitivities::Variation::has_converged(double h) {
   has_points_to_spare = true;
   const int width = padded_names();
   floor.setZero(now.cols());
-  for (const auto& one : equations.parameters()) floor[one.column] = equations.size_of(one);
+  for (std::size_t p = 0; p < equations.parameters().size(); ++p) {
+    const auto& one = equations.parameters()[p];
+    const double elsewhere = sizes_elsewhere.size() == 0 ? 0.0 : sizes_elsewhere[p];
+    floor[one.column] = std::max(equations.size_of(one), elsewhere);
+  }
   for (int k = 0; k < now.cols(); ++k) {
     if (!now.col(k).allFinite()) continue;
     const double largest = decay[k], last = decay[width + k], middle = decay[2 * width + k];
@@ -160,6 +165,11 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
       points_at_once = std::min(points_at_once + 3, most_points);
       return advance(step, from, to, halvings);
     }
+    // At an equilibrium, all that is there may be what the last bits of the angles leave.
+    if (halvings == 4 && sizes_elsewhere.size() == 0 && !equations.parameters().empty()) {
+      sizes_elsewhere = equations.sizes_elsewhere(t_start, states.data());
+      return advance(step, from, to, halvings);
+    }
     const double middle = 0.5 * (from + to);
     if (halvings == most_halvings_of_step || --cuts_left < 0 || middle == from || middle == to) {
       refuse_from(t_start + from * step.h,
@@ -219,6 +229,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
 /// the state after takes its place.
 void Sensitivities::Variation::change_laws(const WatchedChange& change) {
   if (!saltation) saltation.emplace(equations);
+  sizes_elsewhere.resize(0);
   if (!is_over) {
     try {
       if (change.at_start) {

@@ -213,6 +213,16 @@ void VariationalEquations::at(double t, const double* y, const Eigen::Ref<Matrix
   by_parameters_.compute(mechanisms_, t, View(y, n_), View(qd, n_), qdd_, *forces_, by_parameters);
 }
 
+Vector VariationalEquations::sizes_elsewhere(double t, const double* y) {
+  const Vector still = Vector::Zero(n_);
+  const Vector q = View(y, n_) + Vector::LinSpaced(n_, 0.7, 0.7 + 0.3 * n_);  // rad
+  Matrix by(n_, static_cast<Eigen::Index>(parameters_.size()));
+  forces_->set_mass_matrix(q.data());
+  forces_->factor_mass();
+  by_parameters_.compute(mechanisms_, t, q, still, still, *forces_, by);
+  return by.cwiseAbs().colwise().maxCoeff();
+}
+
 Vector VariationalEquations::rates(double t, const double* y) const {
   Vector f(2 * n_);
   f.head(n_) = View(y + n_, n_);

@@ -65,6 +65,9 @@ class VariationalEquations {
   /// (n, parameters).
   void at(double t, const double* y, const Eigen::Ref<Matrix>& by_q,
           const Eigen::Ref<Matrix>& by_qd, const Eigen::Ref<Matrix>& by_parameters);
+  /// The largest entry of d qdd/d p for each parameter, of links at rest at other angles than
+  /// those of a state: what it may be of which the last bits of these angles leave rounding.
+  Vector sizes_elsewhere(double t, const double* y);
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
   /// How large d qdd/d p may be by rounding alone, in units of epsilon, at the last point.
   double size_of(const Parameter& one) const {
