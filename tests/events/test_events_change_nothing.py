@@ -14,8 +14,8 @@ from pendcore import events as ev
 
 BOOK = pc.Scene.textbook()
 ERROR_ORDERS = {method["name"]: method["error_order"] for method in _core.methods()}
-DENSE_STAGES = {
-    method["name"]: len(table.get("c", ())) - len(table.get("b", table.get("c", ())))
+DENSE_STAGES = {  # after the one at the end of the step
+    method["name"]: len(table["a"]) - 1 - table["a"].index(table["b"]) if "b" in table else 0
     for method in _core.methods()
     for table in [_core.tableau(method["first"])]  # nothing is stiff here
 }
