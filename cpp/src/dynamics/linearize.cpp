@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/floating_point_environment.hpp"
@@ -122,8 +121,9 @@ void require_joint(const Scene& scene, int joint) {
 }
 
 /// The links, payloads, rotors and locks of a scene, with a damper of 1 N m s in each joint that
-/// turns, and a gravity of -1 m/s^2. At rest, a change of the rates acts by the dampers' torques
-/// alone, and qdd is what an acceleration of the pivot of 1 m/s^2 along y gives.
+/// turns, and a gravity of -1 m/s^2: at rest, qdd is what an acceleration of the pivot of 1 m/s^2
+/// along y gives. It changes as if by one along x where all links turn, and by the torques of the
+/// dampers where rates change.
 Scene scene_of_inputs(const Scene& scene) {
   Scene result{.links = scene.links, .gravity = -1.0};
   std::ranges::copy_if(scene.effects, std::back_inserter(result.effects), [](const Effect& one) {
@@ -144,9 +144,10 @@ Matrix responses_to(const std::vector<Input>& inputs, const Scene& scene, const 
   const Eigen::Index n = q.size();
   const auto count = static_cast<Eigen::Index>(inputs.size());
   const std::vector<bool> locked = locked_joints(scene);
-  const Matrix zeros = Matrix::Zero(count, n);
-  Matrix rates = zeros;
+  Matrix angles = Matrix::Zero(count, n);
+  Matrix rates = angles;
   for (Eigen::Index k = 0; k < count; ++k) {
+    if (inputs[k].kind == Input::Kind::pivot_x) angles.row(k).setOnes();
     if (inputs[k].kind != Input::Kind::torque) continue;
     const int joint = inputs[k].joint;
     require_joint(scene, joint);
@@ -157,17 +158,13 @@ Matrix responses_to(const std::vector<Input>& inputs, const Scene& scene, const 
     }
     rates.row(k).tail(n - joint + 1).setConstant(-1.0);
   }
+  const Vector rest = Vector::Zero(n);
   Vector qdd(n);
   Matrix responses(count, n);
-  jacobian.along(0.0, q.data(), zeros.data(), static_cast<int>(count), zeros.data(), rates.data(),
+  jacobian.along(0.0, q.data(), rest.data(), static_cast<int>(count), angles.data(), rates.data(),
                  qdd.data(), responses.data());
   for (Eigen::Index k = 0; k < count; ++k) {
     if (inputs[k].kind == Input::Kind::pivot_y) responses.row(k) = qdd.transpose();
-    if (inputs[k].kind != Input::Kind::pivot_x) continue;
-    const Vector turned = q.array() + std::numbers::pi / 2.0;  // along y what was along x
-    Vector change(n);
-    jacobian.along(0.0, turned.data(), zeros.data(), 1, zeros.data(), zeros.data(),
-                   &responses(k, 0), change.data());
   }
   return responses;
 }
