@@ -24,21 +24,38 @@ PENDCORE_INLINE void copy_links(const Dual<double, Along>* from, int n, Dual<dou
   std::copy_n(from, n, to);
 }
 
+/// Computes sines and cosines of four links.
+template <class Row, class Number>
+PENDCORE_INLINE void sines_cosines(const Number* q, Number* s, Number* c) {
+  if constexpr (Lanes<Row>::width == 4) {
+    Row sine, cosine;
+    sine_cosine(load<Row>(q), sine, cosine);
+    store(s, sine);
+    store(c, cosine);
+  } else {
+    Pack<4> sine, cosine;
+    sine_cosine(Pack<4>{q[0].value, q[1].value, q[2].value, q[3].value}, sine, cosine);
+    for (int i = 0; i < 4; ++i) {
+      s[i] = {sine[i], cosine[i] * q[i].slope};
+      c[i] = {cosine[i], -(sine[i] * q[i].slope)};
+    }
+  }
+}
+
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd) const {
   Number* const s = in(s_);
   Number* const c = in(c_);
   copy_links(q, n_, in(q_));
   copy_links(qd, n_, in(qd_));
-  for (int i = 0; i < padded_; i += width) {
-    const Row rate = load<Row>(in(qd_) + i);
-    Row sine, cosine;
-    sine_cosine(load<Row>(in(q_) + i), sine, cosine);
-    store(s + i, sine);
-    store(c + i, cosine);
-    const Row square = rate * rate;
-    store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
-    store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+  for (int first = 0; first < padded_; first += 4) {
+    sines_cosines<Row>(in(q_) + first, s + first, c + first);
+    for (int i = first; i < first + 4; i += width) {
+      const Row rate = load<Row>(in(qd_) + i);
+      const Row square = rate * rate;
+      store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
+      store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+    }
   }
   for (int i = 0; i < padded_; i += width) {
     const Row sine = load<Row>(s + i);
