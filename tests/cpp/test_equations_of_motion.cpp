@@ -45,6 +45,25 @@ const Scene of_corners{
         RodDrag{.link = 2, .drag_coefficient = 1.2, .diameter = 0.1, .wind = {3, 1}},
         DryJointFriction{.joint = 1, .coulomb = 0.3, .static_ = 0.6, .stribeck_velocity = 0.5}}};
 
+/// Nine links with every kind of law on some of them, and joint 4 held.
+Scene long_chain() {
+  Scene scene{.links = {Link::uniform_rod(2.5, 0.7), Link::point_mass(0.4, 1.6)}, .gravity = 9.81};
+  scene.links.resize(9, Link::uniform_rod(1.0, 0.3));
+  scene.effects = of_corners.effects;
+  scene.effects.insert(
+      scene.effects.end(),
+      {ViscousJoint{.joint = 7, .damping = 0.3, .damping3 = 0.1},
+       TorsionalSpring{.joint = 9, .stiffness = 2.0, .rest_angle = 0.4},
+       DryJointFriction{.joint = 6, .coulomb = 0.1, .static_ = 0.2, .exponent = 1.5},
+       DryJointFriction{.joint = 5, .coulomb = 0.1, .static_ = 0.3, .stribeck_velocity = 0.2},
+       RodDrag{.link = 9, .drag_coefficient = 1.0, .diameter = 0.2},
+       Motor{.joint = 3, .sinusoid = Sinusoid{0.5, 3.0, 0.1}},
+       Motor{.joint = 8, .pd = PD{2.0, 0.3, 1.0}},
+       DrivenPivot{.x = Sinusoid{0.1, 5.0, 0.0}, .y = Sinusoid{0.05, 11.0, 0.2}},
+       RotorInertia{.joint = 2, .armature = 0.05}, Payload{.mass = 0.3}, Lock{.joint = 4}});
+  return scene;
+}
+
 bool are_same(double a, double b) {
   return std::bit_cast<long long>(a) == std::bit_cast<long long>(b);
 }
@@ -127,28 +146,32 @@ TEST_CASE("three states at once have the bits of each state alone" *
 TEST_CASE("the Jacobian has the bits of each direction alone, beside those of the rates") {
   Random any(10, 4.0);
   std::vector<Scene> scenes = of_two_links;
-  scenes.push_back(of_corners);
+  scenes.insert(scenes.end(), {of_corners, {.links = {3, rods[0]}, .gravity = 9.81}, long_chain()});
   for (const Scene& scene : scenes) {
+    const auto n = static_cast<Eigen::Index>(scene.links.size());
     const EquationsOfMotion equations = equations_of_motion(scene);
     const RightHandSide rates = right_hand_side(equations);
     const Jacobian jacobian(scene, equations_of_motion(scene));
     for (int round = 0; round < 100; ++round) {
-      double y[4];
+      Vector y(2 * n), qdd(n), plain(n), change(n);
       std::ranges::generate(y, std::ref(any));
+      const double* const qd = y.data() + n;
       const double t = any();
-      Matrix by_q(2, 2), by_qd(2, 2);
-      jacobian(t, y, y + 2, by_q, by_qd);
-      double plain[2];
-      rates(t, y, y + 2, plain);
-      for (int j = 0; j < 4; ++j) {
-        double direction[4] = {};
-        direction[j] = 1.0;
-        double qdd[2], change[2];
-        jacobian.along(t, y, y + 2, direction, direction + 2, qdd, change);
-        for (int i = 0; i < 2; ++i) {
-          REQUIRE(are_same(qdd[i], plain[i]));
-          REQUIRE(are_same(j < 2 ? by_q(i, j) : by_qd(i, j - 2), change[i]));
-        }
+      Matrix by_q(n, n), by_qd(n, n);
+      jacobian(t, y.data(), qd, by_q, by_qd);
+      rates(t, y.data(), qd, plain.data());
+      const Matrix directions = Matrix::Identity(2 * n, 2 * n);
+      const Matrix dq = directions.leftCols(n), dqd = directions.rightCols(n);
+      Matrix together(2 * n, n);
+      jacobian.along(t, y.data(), qd, static_cast<int>(2 * n), dq.data(), dqd.data(), qdd.data(),
+                     together.data());
+      REQUIRE(std::ranges::equal(qdd, plain, are_same));
+      for (Eigen::Index j = 0; j < 2 * n; ++j) {
+        const Vector column = j < n ? by_q.col(j) : by_qd.col(j - n);
+        jacobian.along(t, y.data(), qd, 1, &dq(j, 0), &dqd(j, 0), qdd.data(), change.data());
+        REQUIRE(std::ranges::equal(qdd, plain, are_same));
+        REQUIRE(std::ranges::equal(column, change, are_same));
+        REQUIRE(std::ranges::equal(together.row(j), change, are_same));
       }
     }
   }

@@ -63,13 +63,14 @@ class Equations {
   void accelerations(double t, const Numbers& q, const Numbers& qd, Eigen::Ref<Vector> qdd);
 
   /// Exact to rounding, but for the part of a user's function, which is differentiated by central
-  /// differences (ten digits). Cost: 2n right-hand sides, each two to three times as expensive.
+  /// differences (ten digits). Cost: 2n right-hand sides, each two to three times as expensive; of
+  /// three links and more, four or eight of them together cost three times as much as one.
   Derivatives jacobian(double t, const Numbers& q, const Numbers& qd);
 
   /// The motion close to a state, exact to rounding where jacobian() is. A joint that a Lock holds
   /// takes no torque. Throws std::invalid_argument where the motion has no derivative: at a stop,
   /// in a joint at rest under dry friction, and where two laws of an effect meet; the message says
-  /// from which side there is one. Cost: jacobian(), and O(n^3) for the inputs.
+  /// from which side there is one. Cost: jacobian(), and half as much for n torques.
   Linearization linearize(double t, const Numbers& q, const Numbers& qd,
                           const std::vector<Input>& inputs);
 

@@ -100,9 +100,7 @@ class TangentSystem final : public GeneralSystem {
     __builtin_memcpy(dydt, qd, row * sizeof(double));
     std::fill_n(qdd, row, 0.0);
     choose_laws(t, y, qd);
-    for (int change = n_; change <= count_ * n_; change += n_) {
-      jacobian_.along(t, y, qd, y + change, qd + change, qdd, qdd + change);
-    }
+    jacobian_.along(t, y, qd, count_, y + n_, qd + n_, qdd, qdd + n_);
   }
 
  private:

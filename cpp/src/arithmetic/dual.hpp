@@ -155,6 +155,32 @@ PENDCORE_LINEAR_FUNCTION(other)
 PENDCORE_LINEAR_FUNCTION(before)
 PENDCORE_LINEAR_FUNCTION(after)
 
+/// A number with several slopes is a row by itself.
+template <class Number>
+  requires requires(Number x) { x.slope[0]; }
+PENDCORE_INLINE Number load(const Number* from) {
+  return *from;
+}
+template <class Along>
+  requires(Lanes<Along>::width > 1)
+PENDCORE_INLINE void store(Dual<double, Along>* to, const Dual<double, Along>& x) {
+  *to = x;
+}
+template <class Along>
+PENDCORE_INLINE Dual<double, Along> before(const Dual<double, Along>& /*x*/) {
+  return 0.0;
+}
+template <class Along>
+PENDCORE_INLINE const Dual<double, Along>& before(const Dual<double, Along>& /*x*/,
+                                                  const Dual<double, Along>& row_before) {
+  return row_before;
+}
+template <class Along>
+PENDCORE_INLINE const Dual<double, Along>& after(const Dual<double, Along>& /*x*/,
+                                                 const Dual<double, Along>& row_after) {
+  return row_after;
+}
+
 template <class Row, class Along>
 PENDCORE_INLINE Dual<Row, Along> absolute(const Dual<Row, Along>& x) {
   return {absolute(x.value), x.value < Row{} ? Along(-x.slope) : x.slope};

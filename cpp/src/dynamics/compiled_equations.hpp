@@ -42,6 +42,7 @@ struct Equations::Compiled {
   Scene scene;
   EquationsOfMotion equations;
   std::optional<Jacobian> derivatives{};
+  std::optional<Jacobian> of_inputs{};           ///< for the responses to inputs (linearize.cpp)
   std::optional<Mechanism<double>> constants{};  ///< for motion()
   std::vector<int> modes_of_constants{};
   InverseDynamics<double> of_motion{};

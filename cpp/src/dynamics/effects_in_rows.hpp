@@ -78,6 +78,17 @@ struct alignas(std::bit_floor(sizeof(Row))) SharedLaw {
   unsigned taken = 0;  ///< a bit for each lane in use
 };
 
+/// The law of one joint or link of a row.
+template <template <class> class Law>
+PENDCORE_INLINE Law<double> law_of_lane(const Law<Pack<4>>& all, int lane) {
+  Law<double> one;
+  each_field(one, all, [lane](double& to, const Pack<4>& from) { to = from[lane]; });
+  if constexpr (requires { Law<double>::shared(one); }) {
+    Law<double>::shared(one) = Law<Pack<4>>::shared(all);
+  }
+  return one;
+}
+
 /// The laws of a scene, a vector for each law of the list, and a pointer to one of them.
 template <class List>
 struct LawsOf;

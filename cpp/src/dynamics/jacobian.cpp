@@ -58,37 +58,88 @@ PENDCORE_INLINE void jacobian_in_memory(const Form* form, double t, const double
 }  // namespace
 
 Jacobian::Jacobian(const Scene& scene, const EquationsOfMotion& equations)
-    : n_(static_cast<int>(scene.links.size())), equations_(equations), q_(n_), qd_(n_), qdd_(n_) {
-  if (std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) {
-    chain_ = std::make_shared<ChainOf<Dual<double>>>(
-        scene, std::dynamic_pointer_cast<EffectsInRows<Pack<4>>>(equations.effects));
+    : n_(static_cast<int>(scene.links.size())), equations_(equations) {
+  one_.row.resize(3 * static_cast<std::size_t>(n_));
+  if (!std::holds_alternative<std::shared_ptr<Chain>>(equations.form)) return;
+  const auto effects = std::dynamic_pointer_cast<EffectsInRows<Pack<4>>>(equations.effects);
+  const auto take = [&]<class Number>(Directions<Number>& some) {
+    some.chain = std::make_shared<ChainOf<Number>>(scene, effects);
+    some.row.resize(one_.row.size());
+  };
+  take(one_);
+  if (!has_special_kernels_ || !effects->users.empty()) return;
+  if (instruction_set() == InstructionSet::x86_64_v4) {
+    take(eight_);
+  } else {
+    take(four_);
   }
 }
 
-void Jacobian::compute(double t) const {
-  std::visit(
-      [&]<class Form>(const Form& form) {
-        if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
-          on_this_processor<&accelerations_in_memory<ChainOf<Dual<double>>, Dual<double>>,
-                            wide_sets>(chain_.get(), t, q_.data(), qd_.data(), qdd_.data());
-        } else {
-          on_this_processor<&accelerations_in_memory<Form, Dual<double>>>(&form, t, q_.data(),
-                                                                          qd_.data(), qdd_.data());
-        }
-      },
-      equations_.form);
+template <class Number>
+void Jacobian::compute(double t, Directions<Number>& some) const {
+  constexpr auto* of_chain = &accelerations_in_memory<ChainOf<Number>, Number>;
+  Number* const q = some.row.data();
+  Number* const qd = q + n_;
+  Number* const qdd = qd + n_;
+  if constexpr (std::is_same_v<Number, Dual<double>>) {
+    std::visit(
+        [&]<class Form>(const Form& form) {
+          if constexpr (std::is_same_v<Form, std::shared_ptr<Chain>>) {
+            on_this_processor<of_chain, wide_sets>(some.chain.get(), t, q, qd, qdd);
+          } else {
+            on_this_processor<&accelerations_in_memory<Form, Number>>(&form, t, q, qd, qdd);
+          }
+        },
+        equations_.form);
+  } else if constexpr (has_special_kernels_of_rare_runs) {
+    constexpr bool is_wide = Lanes<decltype(Number::slope)>::width == 8;
+    constexpr InstructionSet set = is_wide ? wide_special_sets.best : special_sets.least;
+    static const auto clone = only<of_chain, set>();
+    clone(some.chain.get(), t, q, qd, qdd);
+  }
   // The link after a held joint turns with the link before it, to the last bit.
   for (int i = 0; i < n_; ++i) {
     if (!equations_.effects || equations_.effects->held[i] == 0) continue;
-    qdd_[i].slope = i > 0 ? qdd_[i - 1].slope : 0.0;
+    qdd[i].slope = (i > 0 ? qdd[i - 1] : Number{}).slope;
   }
+}
+
+/// Computes qdd along `count` directions, in a row y of q, qd and qdd: put(y, j, k) sets the slopes
+/// of q and qd in lane k to direction j, and take(y, j, k) gets those of qdd.
+template <class Number, class Put, class Take>
+void Jacobian::in_turn(Directions<Number>& some, double t, const double* q, const double* qd,
+                       int count, const Put& put, const Take& take) const {
+  constexpr int at_once = Lanes<decltype(Number::slope)>::width;
+  Number* const y = some.row.data();
+  std::copy_n(q, n_, y);
+  std::copy_n(qd, n_, y + n_);
+  for (int first = 0; first < count; first += at_once) {
+    const int after = std::min(first + at_once, count);
+    for (int j = first; j < after; ++j) put(y, j, j - first);
+    compute(t, some);
+    for (int j = first; j < after; ++j) take(y, j, j - first);
+  }
+}
+
+/// The same, several directions at a time where that is faster.
+template <class Put, class Take>
+void Jacobian::in_turn(double t, const double* q, const double* qd, int count, const Put& put,
+                       const Take& take) const {
+  if (count > 1 && eight_.chain) return in_turn(eight_, t, q, qd, count, put, take);
+  if (count > 1 && four_.chain) return in_turn(four_, t, q, qd, count, put, take);
+  in_turn(one_, t, q, qd, count, put, take);
 }
 
 void Jacobian::operator()(double t, const double* q, const double* qd, Eigen::Ref<Matrix> by_q,
                           Eigen::Ref<Matrix> by_qd) const {
-  // Both matrices at once have the bits of each direction alone, and are only faster.
-  if (chain_ || !has_special_kernels_of_rare_runs || instruction_set() < special_sets.least) {
-    return direction_by_direction(t, q, qd, by_q, by_qd);
+  if (one_.chain || !has_special_kernels_) {
+    return in_turn(
+        t, q, qd, 2 * n_, [](auto* y, int j, int k) { set_lane(y[j].slope, k, 1.0); },
+        [&](auto* y, int j, int k) {
+          set_lane(y[j].slope, k, 0.0);
+          auto column = j < n_ ? by_q.col(j) : by_qd.col(j - n_);
+          for (int i = 0; i < n_; ++i) column[i] = lane(y[2 * n_ + i].slope, k);
+        });
   }
   std::visit(
       [&]<class Form>(const Form& form) {
@@ -112,33 +163,22 @@ void Jacobian::operator()(double t, const double* q, const double* qd, Eigen::Re
   }
 }
 
-void Jacobian::direction_by_direction(double t, const double* q, const double* qd,
-                                      Eigen::Ref<Matrix> by_q, Eigen::Ref<Matrix> by_qd) const {
-  std::copy_n(q, n_, q_.begin());
-  std::copy_n(qd, n_, qd_.begin());
-  auto one = [&](Dual<double>& variable, auto column) {
-    variable.slope = 1.0;
-    compute(t);
-    variable.slope = 0.0;
-    for (int i = 0; i < n_; ++i) column[i] = qdd_[i].slope;
-  };
-  for (int j = 0; j < n_; ++j) {
-    one(q_[j], by_q.col(j));
-    one(qd_[j], by_qd.col(j));
-  }
-}
-
-void Jacobian::along(double t, const double* q, const double* qd, const double* dq,
-                     const double* dqd, double* qdd, double* change) const {
-  for (int i = 0; i < n_; ++i) {
-    q_[i] = {q[i], dq[i]};
-    qd_[i] = {qd[i], dqd[i]};
-  }
-  compute(t);
-  for (int i = 0; i < n_; ++i) {
-    qdd[i] = qdd_[i].value;
-    change[i] = qdd_[i].slope;
-  }
+void Jacobian::along(double t, const double* q, const double* qd, int count, const double* dq,
+                     const double* dqd, double* qdd, double* changes) const {
+  in_turn(
+      t, q, qd, count,
+      [&](auto* y, int j, int k) {
+        for (int i = 0; i < n_; ++i) {
+          set_lane(y[i].slope, k, dq[j * n_ + i]);
+          set_lane(y[n_ + i].slope, k, dqd[j * n_ + i]);
+        }
+      },
+      [&](auto* y, int j, int k) {
+        for (int i = 0; i < n_; ++i) {
+          qdd[i] = y[2 * n_ + i].value;
+          changes[j * n_ + i] = lane(y[2 * n_ + i].slope, k);
+        }
+      });
 }
 
 }  // namespace pendcore

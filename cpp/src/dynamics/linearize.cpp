@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/floating_point_environment.hpp"
@@ -10,7 +11,11 @@
 #include "dynamics/possible_state.hpp"
 #include "effects/behaviour.hpp"
 #include "pendcore/effects/joint_stop.hpp"
+#include "pendcore/effects/lock.hpp"
 #include "pendcore/effects/motor.hpp"
+#include "pendcore/effects/payload.hpp"
+#include "pendcore/effects/rotor_inertia.hpp"
+#include "pendcore/effects/viscous_joint.hpp"
 
 namespace pendcore {
 namespace {
@@ -86,11 +91,9 @@ struct DerivativesAt {
   Derivatives by;
   Matrix by_parameters;  ///< (n, k)
 
-  double largest() const {
-    return std::max({largest_of(qdd), largest_of(by.by_q), largest_of(by.by_qd)});
-  }
   bool agree(const DerivativesAt& other) const {
-    const double rounding = rounding_of_derivatives * largest();
+    const double largest = std::max({largest_of(qdd), largest_of(by.by_q), largest_of(by.by_qd)});
+    const double rounding = rounding_of_derivatives * largest;
     const Vector columns = by_parameters.cwiseAbs().colwise().maxCoeff().transpose();
     const Matrix differences = (by_parameters - other.by_parameters).cwiseAbs();
     for (Eigen::Index k = 0; k < columns.size(); ++k) {
@@ -117,34 +120,53 @@ void require_joint(const Scene& scene, int joint) {
                               std::to_string(n));
 }
 
-/// The torques in `joints` that have the effect of an input of one unit.
-Vector torques_of(const Scene& scene, const JointForces& forces, const Input& input) {
-  const auto m = static_cast<Eigen::Index>(forces.joints.size());
-  Vector torques = Vector::Zero(m);
-  if (input.kind == Input::Kind::torque) {
-    require_joint(scene, input.joint);
-    const auto found = std::ranges::find(forces.joints, input.joint - 1);
-    if (found == forces.joints.end()) {
-      throw std::invalid_argument(
-          input_name(input.joint) +
-          ": a Lock holds this joint, which no torque turns: choose another "
-          "joint, or a scene without this Lock");
-    }
-    torques[found - forces.joints.begin()] = 1.0;
-    return torques;
+/// The links, payloads, rotors and locks of a scene, with a damper of 1 N m s in each joint that
+/// turns, and a gravity of -1 m/s^2: at rest, qdd is what an acceleration of the pivot of 1 m/s^2
+/// along y gives. It changes as if by one along x where all links turn, and by the torques of the
+/// dampers where rates change.
+Scene scene_of_inputs(const Scene& scene) {
+  Scene result{.links = scene.links, .gravity = -1.0};
+  std::ranges::copy_if(scene.effects, std::back_inserter(result.effects), [](const Effect& one) {
+    return one.is<Payload>() || one.is<RotorInertia>() || one.is<Lock>();
+  });
+  const std::vector<bool> locked = locked_joints(scene);
+  for (int joint = 1; joint <= std::ssize(locked); ++joint) {
+    if (locked[joint - 1]) continue;
+    result.effects.push_back(ViscousJoint{.joint = joint, .damping = 1.0});
   }
-  // On the angle of link k, the pivot's acceleration acts as a torque a_k (xdd_0 s_k - ydd_0 c_k).
-  double beyond = 0.0;
-  auto k = static_cast<int>(scene.links.size());
-  for (Eigen::Index r = m; r-- > 0;) {
-    while (k-- > forces.joints[r]) {
-      const double arm = input.kind == Input::Kind::pivot_x ? forces.sine[k] : -forces.cosine[k];
-      beyond += forces.inertia.links[k].first_moment * arm;
+  return result;
+}
+
+/// What inputs of one unit add to qdd, (k, n); nothing for a parameter. The Jacobian is that of
+/// scene_of_inputs().
+Matrix responses_to(const std::vector<Input>& inputs, const Scene& scene, const Numbers& q,
+                    const Jacobian& jacobian) {
+  const Eigen::Index n = q.size();
+  const auto count = static_cast<Eigen::Index>(inputs.size());
+  const std::vector<bool> locked = locked_joints(scene);
+  Matrix angles = Matrix::Zero(count, n);
+  Matrix rates = angles;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (inputs[k].kind == Input::Kind::pivot_x) angles.row(k).setOnes();
+    if (inputs[k].kind != Input::Kind::torque) continue;
+    const int joint = inputs[k].joint;
+    require_joint(scene, joint);
+    if (locked[joint - 1]) {
+      throw std::invalid_argument(input_name(joint) +
+                                  ": a Lock holds this joint, which no torque turns: choose "
+                                  "another joint, or a scene without this Lock");
     }
-    ++k;
-    torques[r] = beyond;
+    rates.row(k).tail(n - joint + 1).setConstant(-1.0);
   }
-  return torques;
+  const Vector rest = Vector::Zero(n);
+  Vector qdd(n);
+  Matrix responses(count, n);
+  jacobian.along(0.0, q.data(), rest.data(), static_cast<int>(count), angles.data(), rates.data(),
+                 qdd.data(), responses.data());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (inputs[k].kind == Input::Kind::pivot_y) responses.row(k) = qdd.transpose();
+  }
+  return responses;
 }
 
 }  // namespace
@@ -163,19 +185,22 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
                        .B = Matrix::Zero(2 * n, static_cast<Eigen::Index>(inputs.size()))};
   std::vector<Eigen::Index> of_parameters;  // their columns
   std::vector<std::string> names;
-  if (!inputs.empty()) {
-    JointForces& forces = compiled_->free_joints();
-    forces.set_mass_matrix(q.data());
-    forces.set_up();
-    for (std::size_t k = 0; k < inputs.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      if (inputs[k].kind == Input::Kind::parameter) {
-        of_parameters.push_back(column);
-        names.push_back(inputs[k].parameter);
-      } else {
-        result.B.col(column).tail(n) = forces.response(torques_of(scene, forces, inputs[k]));
-      }
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    if (inputs[k].kind != Input::Kind::parameter) continue;
+    of_parameters.push_back(static_cast<Eigen::Index>(k));
+    names.push_back(inputs[k].parameter);
+  }
+  if (names.size() < inputs.size()) {
+    std::optional<Jacobian>& jacobian = compiled_->of_inputs;
+    if (!jacobian) {
+      const Scene alone = scene_of_inputs(scene);
+      jacobian.emplace(alone, equations_of_motion(alone));
     }
+    result.B.bottomRows(n) = responses_to(inputs, scene, q, *jacobian).transpose();
+  }
+  if (!names.empty()) {
+    compiled_->free_joints().set_mass_matrix(q.data());
+    compiled_->free_joints().factor_mass();
   }
 
   if (!compiled_->derivatives) compiled_->derivatives.emplace(scene, equations);
@@ -197,7 +222,7 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
     return found;
   };
   const DerivativesAt found = here();
-  if (!std::isfinite(found.largest())) {
+  if (!(found.qdd.allFinite() && found.by.by_q.allFinite() && found.by.by_qd.allFinite())) {
     throw std::invalid_argument("t = " + text(t) +
                                 ": a law of an effect is not finite there: choose a time within "
                                 "its table, or another state");

@@ -5,7 +5,7 @@ namespace pendcore {
 template <class Number>
 ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<EffectsInRows<Pack<4>>> effects)
     : n_(static_cast<int>(scene.links.size())),
-      padded_((n_ + 3) / 4 * 4),
+      padded_((n_ + width - 1) / width * width),
       gravity_(scene.gravity),
       effects_(std::move(effects)) {
   const Inertia inertia(scene);
@@ -35,5 +35,9 @@ ChainOf<Number>::ChainOf(const Scene& scene, std::shared_ptr<EffectsInRows<Pack<
 // The kernels instantiate the rest.
 template ChainOf<double>::ChainOf(const Scene&, std::shared_ptr<EffectsInRows<Pack<4>>>);
 template ChainOf<Dual<double>>::ChainOf(const Scene&, std::shared_ptr<EffectsInRows<Pack<4>>>);
+template ChainOf<Dual<double, Pack<4>>>::ChainOf(const Scene&,
+                                                 std::shared_ptr<EffectsInRows<Pack<4>>>);
+template ChainOf<Dual<double, Pack<8>>>::ChainOf(const Scene&,
+                                                 std::shared_ptr<EffectsInRows<Pack<4>>>);
 
 }  // namespace pendcore

@@ -64,9 +64,15 @@ class ChainOf {
   bool has_rotors() const { return has_rotors_; }
 
  private:
-  using Row = std::conditional_t<std::is_same_v<Number, double>, Pack<4>, Dual<Pack<4>>>;
+  /// The links that are taken at a time: four, or one with slopes along several directions.
+  using Row = std::conditional_t<
+      std::is_same_v<Number, double>, Pack<4>,
+      std::conditional_t<std::is_same_v<Number, Dual<double>>, Dual<Pack<4>>, Number>>;
+  static constexpr int width = Lanes<Row>::width;
   PENDCORE_INLINE void prepare(const Number* q, const Number* qd) const;
   PENDCORE_INLINE void collect_loads(double t) const;
+  template <template <class> class Law, class Use>
+  PENDCORE_INLINE void in_rows(const Law<Pack<4>>& all, int row, const Use& use) const;
   /// `size` is the number of links where the compiler knows it, and 0 otherwise.
   template <int size>
   PENDCORE_INLINE void recursion(const Number& ax, const Number& ay, Number* qdd) const;
@@ -89,7 +95,7 @@ class ChainOf {
   }
 
   int n_;
-  int padded_;  ///< the number of links, rounded up to whole packs
+  int padded_;  ///< the number of links, rounded up to whole rows
   double gravity_;
   double payload_mass_;
   bool has_rotors_ = false;  ///< in joints after the first

@@ -19,8 +19,27 @@ PENDCORE_INLINE void copy_links(const double* from, int n, double* to) {
   if (i + 2 < n) rest[2] = from[i + 2];
   store(to + i, rest);
 }
-PENDCORE_INLINE void copy_links(const Dual<double>* from, int n, Dual<double>* to) {
+template <class Along>
+PENDCORE_INLINE void copy_links(const Dual<double, Along>* from, int n, Dual<double, Along>* to) {
   std::copy_n(from, n, to);
+}
+
+/// Computes sines and cosines of four links.
+template <class Row, class Number>
+PENDCORE_INLINE void sines_cosines(const Number* q, Number* s, Number* c) {
+  if constexpr (Lanes<Row>::width == 4) {
+    Row sine, cosine;
+    sine_cosine(load<Row>(q), sine, cosine);
+    store(s, sine);
+    store(c, cosine);
+  } else {
+    Pack<4> sine, cosine;
+    sine_cosine(Pack<4>{q[0].value, q[1].value, q[2].value, q[3].value}, sine, cosine);
+    for (int i = 0; i < 4; ++i) {
+      s[i] = {sine[i], cosine[i] * q[i].slope};
+      c[i] = {cosine[i], -(sine[i] * q[i].slope)};
+    }
+  }
 }
 
 template <class Number>
@@ -29,21 +48,20 @@ PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd)
   Number* const c = in(c_);
   copy_links(q, n_, in(q_));
   copy_links(qd, n_, in(qd_));
-  for (int i = 0; i < padded_; i += 4) {
-    const Row rate = load<Row>(in(qd_) + i);
-    Row sine, cosine;
-    sine_cosine(load<Row>(in(q_) + i), sine, cosine);
-    store(s + i, sine);
-    store(c + i, cosine);
-    const Row square = rate * rate;
-    store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
-    store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+  for (int first = 0; first < padded_; first += 4) {
+    sines_cosines<Row>(in(q_) + first, s + first, c + first);
+    for (int i = first; i < first + 4; i += width) {
+      const Row rate = load<Row>(in(qd_) + i);
+      const Row square = rate * rate;
+      store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
+      store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
+    }
   }
-  for (int i = 0; i < padded_; i += 4) {
+  for (int i = 0; i < padded_; i += width) {
     const Row sine = load<Row>(s + i);
     const Row cosine = load<Row>(c + i);
-    const Row sine_before = before(sine, load<Row>(s + i - 4));
-    const Row cosine_before = before(cosine, load<Row>(c + i - 4));
+    const Row sine_before = before(sine, load<Row>(s + i - width));
+    const Row cosine_before = before(cosine, load<Row>(c + i - width));
     const Row cos = fma(cosine, cosine_before, sine * sine_before);
     const Row sin = fma(sine, cosine_before, -(cosine * sine_before));
     store(in(cos_) + i, cos);
@@ -69,6 +87,18 @@ struct ChainLoads {
   }
 };
 
+/// Calls use(law, row) with a law of four links and its row, or with that of each link alone.
+template <class Number>
+template <template <class> class Law, class Use>
+PENDCORE_INLINE void ChainOf<Number>::in_rows(const Law<Pack<4>>& all, int row,
+                                              const Use& use) const {
+  if constexpr (width == 1) {
+    for (int i = 4 * row; i < std::min(4 * row + 4, n_); ++i) use(law_of_lane(all, i % 4), i);
+  } else {
+    use(all, row);
+  }
+}
+
 /// Collects the torque on each link, and the force on it in its own frame.
 template <class Number>
 PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
@@ -79,7 +109,7 @@ PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
   Number* const torque = in(torque_);
   Number* const fx = in(fx_);
   Number* const fy = in(fy_);
-  for (int i = 0; i < padded_; i += 4) {
+  for (int i = 0; i < padded_; i += width) {
     store(couple + i, Row{});
     store(torque + i, Row{});
     store(fx + i, Row{});
@@ -101,28 +131,37 @@ PENDCORE_INLINE void ChainOf<Number>::collect_loads(double t) const {
   }
   const ArraysOver<Number> links{in(q_), in(qd_), in(s_), in(c_), in(length_), in(vx_), in(vy_)};
   auto loads_of = [&](int row) {
-    return ChainLoads<Row>{couple + 4 * row, torque + 4 * row, fx + 4 * row, fy + 4 * row};
+    const int i = width * row;
+    return ChainLoads<Row>{couple + i, torque + i, fx + i, fy + i};
   };
-  for (const Couples<Pack<4>>& one : effects.couples) {
-    loads_of(one.row).couple(one.torque(RowInArrays<Row>(links, t, one.row)));
+  for (const Couples<Pack<4>>& all : effects.couples) {
+    in_rows(all, all.row, [&](const auto& one, int row) __attribute__((always_inline)) {
+      loads_of(row).couple(one.torque(RowInArrays<Row>(links, t, row)));
+    });
   }
   for (const JointWave& one : effects.joint_waves) {
     couple[one.joint] += one.gain * effects.wave_sine[one.wave];
   }
   for (const auto& entry : effects.entries) {
-    ChainLoads<Row> loads = loads_of(entry.row);
-    Effects::add(entry, RowInArrays<Row>(links, t, entry.row), loads);
+    Effects::visit(entry, [&](const auto& all) __attribute__((always_inline)) {
+      in_rows(all, entry.row, [&](const auto& one, int row) __attribute__((always_inline)) {
+        ChainLoads<Row> loads = loads_of(row);
+        one.add(RowInArrays<Row>(links, t, row), loads);
+      });
+    });
   }
-  for (const UserLaw& user : effects.users) {
-    Number* const Q = in(user_);
-    for (int i = 0; i < n_; ++i) Q[i] = Number{};
-    effects.call(user, t, in(q_), in(qd_), Q);
-    for (int i = 0; i < n_; ++i) torque[i] += Q[i];
+  if constexpr (width > 1) {
+    for (const UserLaw& user : effects.users) {
+      Number* const Q = in(user_);
+      for (int i = 0; i < n_; ++i) Q[i] = Number{};
+      effects.call(user, t, in(q_), in(qd_), Q);
+      for (int i = 0; i < n_; ++i) torque[i] += Q[i];
+    }
   }
-  for (int i = 0; i < padded_; i += 4) {
+  for (int i = 0; i < padded_; i += width) {
     const Row couples = load<Row>(couple + i);
     store(torque + i,
-          Row(load<Row>(torque + i) + couples - after(couples, load<Row>(couple + i + 4))));
+          Row(load<Row>(torque + i) + couples - after(couples, load<Row>(couple + i + width))));
     if (forces) {
       const Row x = load<Row>(fx + i);
       const Row y = load<Row>(fy + i);
