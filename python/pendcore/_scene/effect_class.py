@@ -26,8 +26,7 @@ class Described(Parametrized):
     def __init_subclass__(cls) -> None:
         if cls.__name__ in DESCRIPTIONS:
             cls.description = DESCRIPTIONS[cls.__name__]
-            # A dataclass with slots is made twice.
-            cls.__doc__ = cls.__doc__ or docstring(cls.description)
+            cls.__doc__ = docstring(cls.description)
 
     def __post_init__(self) -> None:
         self._settle(f"{type(self).__name__}: ")

@@ -170,6 +170,7 @@ def law_in_lines(law: str) -> str:
     return broken.replace("\N{NO-BREAK SPACE}", " ")
 
 
+@cache  # a dataclass with slots is made twice
 def docstring(described: Description) -> str:
     """Return the docstring of a class."""
     return "\n\n".join(_sections(described))
