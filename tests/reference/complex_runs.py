@@ -209,13 +209,13 @@ class HybridRun:
     def rates(self, t: Any, y: Any) -> Any:
         return np.append(y[len(y) // 2 :], self.solved(t, y, self.held, self.sign)[0])
 
-    def side(self, j: int, y: Any) -> int:
+    def side(self, j: int, y: Any, near: float = 1e-9) -> int:
         """Which stop a joint is at: -1, 0 or 1."""
         if j not in self.stops:
             return 0
         phi = self.relative(y[: len(y) // 2], j).real
         stop = self.stops[j]
-        return int(abs(phi - stop.upper.real) < 1e-9) - int(abs(phi - stop.lower.real) < 1e-9)
+        return int(abs(phi - stop.upper.real) < near) - int(abs(phi - stop.lower.real) < near)
 
     def guards(self) -> Iterator[tuple[str, int, Callable[[Any, Any], Any]]]:
         def half(y: Any) -> int:
@@ -269,7 +269,6 @@ class HybridRun:
         return root
 
     def change(self, name: str, j: int, t: Any, y: Any) -> Any:
-        n = len(y) // 2
         if name == "rest":
             self.hold_and_slide(t, y)
         elif name in {"most", "least"}:
@@ -278,23 +277,36 @@ class HybridRun:
         elif name == "leave":
             self.held.remove(j)
         else:
+            y = self.strike(j, t, y)
+        return y
+
+    def strike(self, j: int, t: Any, y: Any) -> Any:
+        """Let a joint strike its stop, and those that this throws back to theirs at once."""
+        n = len(y) // 2
+        for _ in range(2000):
+            stop = self.stops[j]
+            at = stop.upper if self.side(j, y) > 0 else stop.lower
+            y = y + np.append(np.arange(n) >= j, np.zeros(n)) * (at - self.relative(y, j))
             y = np.append(y[:n], self.struck(y, j))
             self.held = set()
             self.hold_and_slide(t, y)
-        return y
+            again = [k for k in self.stops if self.side(k, y, 1e-14) * self.rate(k, y) > 1e-12]
+            if not again:
+                return y
+            assert len(again) == 1  # otherwise their order is unknown
+            j = again[0]
+        raise AssertionError
+
+    def rate(self, j: int, y: Any) -> float:
+        return float(self.relative(y[len(y) // 2 :], j).real)
 
     def struck(self, y: Any, striker: int) -> Any:
         """The rates after an impact, by trying out which stops push."""
         n = len(y) // 2
         M = np.array(self.rig.mass_matrix(list(y[:n])))
         qd = y[n:]
-        # A joint that only comes near strikes next, be it after 1e-13 s: the order counts.
-        touching = [
-            j
-            for j in self.stops
-            if j == striker
-            or (self.side(j, y) and (j in self.held or abs(self.relative(qd, j).real) < 1e-9))
-        ]
+        # A joint that comes near or has hardly left strikes in turn, be it after 1e-24 s.
+        touching = [j for j in self.stops if j == striker or (self.side(j, y) and j in self.held)]
         e = dict.fromkeys(touching, 0.0)
         if abs(self.relative(qd, striker).real) >= self.stops[striker].capture_speed:
             e[striker] = self.stops[striker].restitution
