@@ -108,12 +108,20 @@ def test_bounces_without_end(restitution: float) -> None:
 
 
 @pytest.mark.few_cases
-@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55, 303, 304, 305])
+@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55, 303, 304, 305, 428])
 def test_random_runs_have_the_derivatives_of_complex_numbers(seed: int) -> None:
     verdict = judged(seed)
     assert verdict.kind == "right", verdict
     assert verdict.events > 0
     assert verdict.error <= ALLOWED
+
+
+def test_impacts_whose_order_rounding_decides_are_refused() -> None:
+    """Three stops are struck 1e-24 s after each other, and bring all joints to rest."""
+    verdict = judged(207)
+    assert verdict.kind == "refused", verdict
+    assert "after t = 0.576467884" in verdict.told
+    assert "stops are struck in an order that rounding decides" in verdict.told
 
 
 def test_back_in_time() -> None:

@@ -16,8 +16,9 @@ import pendcore as pc
 import pytest
 from described_scenes import scene_of
 from numpy.typing import NDArray
-from reference.complex_runs import LITTLE, Numbers, midpoint_rule
+from reference.complex_runs import LITTLE, midpoint_rule
 from reference.effects import Described
+from reference.named_numbers import Numbers
 from reference.newton_euler import Body
 
 E = pc.effects

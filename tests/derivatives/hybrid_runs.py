@@ -12,8 +12,9 @@ import numpy as np
 import pendcore as pc
 from described_scenes import scene_of
 from numpy.typing import NDArray
-from reference.complex_runs import LITTLE, Friction, HybridRun, Numbers, Range, pieces
+from reference.complex_runs import LITTLE, Friction, HybridRun, Range
 from reference.effects import Described
+from reference.named_numbers import Numbers, pieces
 from reference.newton_euler import Body
 
 

@@ -9,19 +9,17 @@ a saltation.
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from reference.arithmetic import COMPLEX
-from reference.effects import Described, law
-from reference.newton_euler import Body
 from reference.rig import Rig
 
 LITTLE = 1e-30j
+NEAR = 1e-14
+"""No smaller gap between a joint and its stop is told from none, rad."""
 
 
 def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
@@ -37,70 +35,6 @@ def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
             row.append(row[-1] + (row[-1] - earlier) / ((j / (j - k)) ** 2 - 1))
         rows.append(row)
     return rows[-1][-1]
-
-
-class Numbers:
-    """All numbers of a run that have names, copied, so that some may be moved."""
-
-    def __init__(
-        self, bodies: Sequence[Body], gravity: float, described: Sequence[Described],
-        y0: Sequence[float],
-    ) -> None:  # fmt: skip
-        self.bodies: list[Any] = [list(body) for body in bodies]
-        self.gravity: Any = gravity
-        self.described: Any = [
-            (kind, {k: dict(v) if isinstance(v, dict) else v for k, v in told.items()})
-            for kind, told in described
-        ]
-        self.y: Any = np.array(y0, dtype=complex)
-
-    def move(self, name: str, by: complex) -> None:
-        """Add to what a name of `simulate(sensitivities=...)` means."""
-        if name == "gravity":
-            self.gravity += by
-        elif start := re.fullmatch(r"(q0|qd0)\[(\d)\]", name):
-            self.y[int(start[2]) - 1 + len(self.bodies) * (start[1] == "qd0")] += by
-        elif link := re.fullmatch(r"link\[(\d)\]\.(\w+)", name):
-            self.bodies[int(link[1]) - 1][Body._fields.index(link[2])] += by
-        else:
-            i, path = re.findall(r"effect\[(\d)\]\.(.+)", name)[0]
-            *parts, last = path.split(".")
-            owner: Any = self.described[int(i) - 1][1]
-            for part in parts:
-                owner = owner[part]
-            owner[last] = (owner.get(last) or 0.0) + by
-
-    def rig(self, described: Sequence[Described] | None = None) -> Rig:
-        """Return the rig of these numbers, with all effects or with some."""
-        effects = [law(one) for one in (self.described if described is None else described)]
-        return Rig(bodies=[Body(*body) for body in self.bodies], gravity=self.gravity,
-                   effects=effects, arithmetic=COMPLEX)  # fmt: skip
-
-
-def pieces(told: dict[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
-    """The laws of a motor that has a table, one after another, and when each begins.
-
-    They begin at the times of the table, and where its torque meets the limit.
-    """
-    limit, joint = told.get("limit", np.inf), told["joint"]
-    points = zip(told["table"]["t"], told["table"]["torque"], strict=True)
-    for (begin, a), (end, b) in itertools.pairwise(points):
-        if told["table"].get("hold"):
-            b = a
-        line = {"table": {"t": (begin, end), "torque": (a, b)}}
-        cuts = [begin, end]
-        for meets in (limit, -limit):
-            if min(a, b) < meets.real < max(a, b):
-                cuts.append(begin + (meets - a) / (b - a) * (end - begin))
-        cuts.sort(key=lambda t: t.real)
-        for first, last in itertools.pairwise(cuts):
-            middle = (first.real + last.real) / 2
-            torque = a + (b - a) * (middle - begin) / (end - begin)
-            is_cut = abs(torque) > limit.real
-            yield (
-                first,
-                {"joint": joint, **({"constant": np.sign(torque) * limit} if is_cut else line)},
-            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,10 +80,11 @@ class HybridRun:
         """Return the state at t_end from that at 0."""
         self.hold_and_slide(0.0, y)
         t: Any = 0.0
+        most = step
         later = [one for one in self.later if one[0].real < t_end]
         while True:
             last = later[0][0] if later else t_end
-            h = min(step, last.real - t.real)
+            h = min(step, most, last.real - t.real)
             is_last = h == last.real - t.real
             if is_last:
                 h = last - t
@@ -165,7 +100,7 @@ class HybridRun:
                 if g(t + h, there).real < 0
             ]
             if not roots:
-                t, y = t + h, there
+                t, y, most = t + h, there, 4 * most
                 if is_last and not later:
                     return y
                 if is_last:
@@ -175,6 +110,7 @@ class HybridRun:
                 continue
             h, name, j, _ = min(roots, key=lambda one: one[0].real)
             y, t = midpoint_rule(self.rates, t, y, h), t + h
+            most = 1e-5  # where stops meet, the next event may follow at once
             self.events.append(f"{name} {j} at {t.real:.6f}")
             assert len(self.events) < 200
             y = self.change(name, j, t, y)
@@ -209,13 +145,13 @@ class HybridRun:
     def rates(self, t: Any, y: Any) -> Any:
         return np.append(y[len(y) // 2 :], self.solved(t, y, self.held, self.sign)[0])
 
-    def side(self, j: int, y: Any) -> int:
+    def side(self, j: int, y: Any, near: float = 1e-9) -> int:
         """Which stop a joint is at: -1, 0 or 1."""
         if j not in self.stops:
             return 0
         phi = self.relative(y[: len(y) // 2], j).real
         stop = self.stops[j]
-        return int(abs(phi - stop.upper.real) < 1e-9) - int(abs(phi - stop.lower.real) < 1e-9)
+        return int(abs(phi - stop.upper.real) < near) - int(abs(phi - stop.lower.real) < near)
 
     def guards(self) -> Iterator[tuple[str, int, Callable[[Any, Any], Any]]]:
         def half(y: Any) -> int:
@@ -269,7 +205,6 @@ class HybridRun:
         return root
 
     def change(self, name: str, j: int, t: Any, y: Any) -> Any:
-        n = len(y) // 2
         if name == "rest":
             self.hold_and_slide(t, y)
         elif name in {"most", "least"}:
@@ -278,29 +213,70 @@ class HybridRun:
         elif name == "leave":
             self.held.remove(j)
         else:
-            y = np.append(y[:n], self.struck(y, j))
-            self.held = set()
-            self.hold_and_slide(t, y)
+            y = self.strike(j, t, y)
         return y
 
-    def struck(self, y: Any, striker: int) -> Any:
-        """The rates after an impact, by trying out which stops push."""
+    def strike(self, j: int, t: Any, y: Any) -> Any:
+        """Let a joint strike its stop, and those that this throws back to theirs at once."""
+        n = len(y) // 2
+        bounced: set[int] = set()
+        for _ in range(2000):
+            stop = self.stops[j]
+            at = stop.upper if self.side(j, y) > 0 else stop.lower
+            y = y + np.append(np.arange(n) >= j, np.zeros(n)) * (at - self.relative(y, j))
+            # A joint that comes near or has hardly left strikes in turn, be it after 1e-24 s.
+            touching = [k for k in self.stops if k == j or (self.side(k, y) and k in self.held)]
+            bounces = abs(self.into(j, y)) >= stop.capture_speed and stop.restitution != 0
+            bounced = (bounced - {*touching}) | ({j} if bounces else set())
+            y = self.struck(y, touching, {j: stop.restitution} if bounces else {})
+            self.held = set()
+            self.hold_and_slide(t, y)
+            again = [k for k in self.stops if self.into(k, y) > 1e-12]
+            if not again:
+                return self.captured(t, y, bounced)
+            assert len(again) == 1  # otherwise their order is unknown
+            j = again[0]
+        raise AssertionError
+
+    def captured(self, t: Any, y: Any, bounced: set[int]) -> Any:
+        """Stop the joints that others throw off too slowly, while they are pushed back."""
+        n = len(y) // 2
+        caught: list[int] = []
+        while True:
+            qdd = self.rates(t, y)[n:]
+            slow = [
+                j
+                for j, stop in self.stops.items()
+                if j not in bounced
+                and j not in caught
+                and 1e-9 < -self.into(j, y) < stop.capture_speed
+                and self.side(j, y) * self.relative(qdd, j).real > 0
+            ]
+            if not slow:
+                return y
+            caught += slow
+            touching = [j for j in self.stops if self.side(j, y, NEAR)]
+            y = self.struck(y, touching, {}, caught)
+            self.held = set()
+            self.hold_and_slide(t, y)
+
+    def into(self, j: int, y: Any) -> float:
+        """How fast a joint moves into a stop from which it is no farther than rounding."""
+        return float(self.side(j, y, NEAR) * self.relative(y[len(y) // 2 :], j).real)
+
+    def struck(
+        self, y: Any, touching: list[int], bounces: dict[int, Any], always: Sequence[int] = ()
+    ) -> Any:
+        """The state after an impact, by trying out which stops push; some hold in any case."""
         n = len(y) // 2
         M = np.array(self.rig.mass_matrix(list(y[:n])))
         qd = y[n:]
-        # A joint that only comes near strikes next, be it after 1e-13 s: the order counts.
-        touching = [
-            j
-            for j in self.stops
-            if j == striker
-            or (self.side(j, y) and (j in self.held or abs(self.relative(qd, j).real) < 1e-9))
-        ]
-        e = dict.fromkeys(touching, 0.0)
-        if abs(self.relative(qd, striker).real) >= self.stops[striker].capture_speed:
-            e[striker] = self.stops[striker].restitution
-        for count in range(1, len(touching) + 1):
-            for acting in itertools.combinations(touching, count):
-                rows = np.array([self.row(j) for j in acting])
+        e = dict.fromkeys(touching, 0.0) | bounces
+        others = [j for j in touching if j not in always]
+        for count in range(len(others) + 1):
+            for more in itertools.combinations(others, count):
+                acting = [*always, *more]
+                rows = np.array([self.row(j) for j in acting]).reshape(len(acting), n)
                 wanted = -np.array([(1 + e[j]) * self.relative(qd, j) for j in acting])
                 response = np.linalg.solve(M, rows.T)
                 impulses = np.linalg.solve(rows @ response, wanted)
@@ -308,14 +284,15 @@ class HybridRun:
                 pushes = all(
                     -self.side(j, y) * impulse.real >= 0
                     for j, impulse in zip(acting, impulses, strict=True)
+                    if j not in always
                 )
                 opens = all(
                     -self.side(j, y) * (self.relative(after, j) + e[j] * self.relative(qd, j)).real
                     >= -1e-10
-                    for j in touching
+                    for j in others
                 )
                 if pushes and opens:
-                    return after
+                    return np.append(y[:n], after)
         raise AssertionError
 
     def hold_and_slide(self, t: Any, y: Any) -> None:

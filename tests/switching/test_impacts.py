@@ -189,6 +189,22 @@ def test_two_stops_are_hit_in_their_order_however_near_or_at_the_same_time(apart
     np.testing.assert_allclose(sol.qd[-1], rates, atol=1e-7)  # some 1e-8 s later
 
 
+def test_plastic_stops_that_are_struck_at_once_stop_both_joints_and_the_run_says_so(fine):
+    """A little earlier at either stop, and a joint is thrown off after its impact."""
+    free = pc.Scene(links=links(TWO), gravity=0.0)
+    start = [0.3, 2.2], [1.0, -3.0]
+    q = pc.simulate(free, (0, 0.05), *start, **fine).q[-1]
+    ends = []
+    for apart in (0.0, 1e-9, -1e-9):
+        first = fx.JointStop(joint=1, range=(-inf, q[0]))
+        second = fx.JointStop(joint=2, range=(q[1] - q[0] - apart, inf))
+        sol = pc.simulate(free.replace(effects=[first, second]), (0, 0.05 + 1e-8), *start, **fine)
+        ends.append(sol.qd[-1])
+        assert ("rounding has decided" in sol.message) == (apart == 0.0)
+    np.testing.assert_array_equal(ends[0], 0.0)
+    assert np.abs(ends[1:]).max(axis=1) == pytest.approx([0.57, 0.35], abs=0.01)
+
+
 def test_impacts_at_the_very_start_are_one_problem_and_need_no_remark():
     stops = [fx.JointStop(joint=j, range=(-1.0, end)) for j, end in ((1, 0.3), (2, 0.5))]
     scene = pc.Scene(links=links(TWO), gravity=0.0, effects=stops)

@@ -137,6 +137,7 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   Matrix after = changes + f * shift.transpose();
   if (change.jumped) {
     if (std::string why = impact_.strike(change, after, remark_); !why.empty()) return why;
+    if (change.lost_order) return "stops are struck in an order that rounding decides";
   }
   changes = after - f_after * shift.transpose();
   take_laws(change, changes);

@@ -24,12 +24,11 @@ void Impacts::strike(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const std::vector<double> before(qd, qd + n_);
   joints_.begin_impact(y);
-  const bool loses_order = bounce_in_turn(t, y, begins);
+  if (bounce_in_turn(t, y, begins) && std::isnan(order_.lost)) order_.lost = t;
   while (capture(t, y)) {
     joints_.stay_at_stops(y, qd);
     modes_.choose_all(t, y);
   }
-  if (loses_order && any_struck_leaves(y) && std::isnan(order_.lost)) order_.lost = t;
   if (joints_.has_failed()) std::ranges::copy(before, qd);
   book(Account::impact, joints_.loss(before.data(), qd), y);
   book(Account::drive, joints_.work_of_drive(equations_, t, before, qd), y);
@@ -37,7 +36,8 @@ void Impacts::strike(double t, double* y, bool begins) {
 
 /// Computes impacts at one time until no joint moves into its stop. A joint at rest that nothing
 /// pushes against its stop counts as leaving it, which more exact numbers might show. Returns
-/// whether the order of the impacts is unknown.
+/// whether the order of the impacts is unknown and may matter. It may even where all of them have
+/// brought the joints to rest: in another order, a joint may be thrown off after its impact.
 bool Impacts::bounce_in_turn(double t, double* y, bool begins) {
   double* const qd = y + n_;
   const bool is_plastic = modes_.changes().may_be_rounding();
@@ -51,7 +51,8 @@ bool Impacts::bounce_in_turn(double t, double* y, bool begins) {
     const double speed = joints_.fastest_strike(y, qd);
     if (speed == 0.0) break;
     const bool is_last = i == most_impacts_at_once || speed <= rounding;
-    if (!begins) loses_order |= loses_order_of(y);
+    const bool is_noticeable = speed > noticeable_rate * joints_.natural_speed();
+    if (!begins && loses_order_of(y) && is_noticeable) loses_order = true;
     if (is_last) {
       joints_.stay_at_stops(y, qd);
     } else {
@@ -76,21 +77,11 @@ bool Impacts::loses_order_of(const double* y) {
   return at_once > 1 || std::ranges::count(order_.struck, 1) > 2;
 }
 
-/// Whether some of the joints that struck go on moving. If the impacts have brought all of them to
-/// rest, another order would do the same.
-bool Impacts::any_struck_leaves(const double* y) const {
-  for (int j = 0; j < n_; ++j) {
-    const double away = std::abs(relative(y + n_, j + 1));
-    if (order_.struck[j] != 0 && away > noticeable_rate * joints_.natural_speed()) return true;
-  }
-  return false;
-}
-
 std::string Impacts::remark() const {
   if (std::isnan(order_.lost)) return {};
   return "; at t = " + text(order_.lost) +
          " s stops were struck within the last bits of one time: rounding has decided their order, "
-         "and with it what follows";
+         "and perhaps with it what follows";
 }
 
 /// Captures joints that leave a stop and are pushed back to it, and that either return before time

@@ -13,8 +13,8 @@ namespace pendcore {
 
 /// A run knows this of the order in which joints struck their stops.
 struct ImpactOrder {
-  /// s, the time at which impacts first came so close together that their order is not known; NaN
-  /// if it always was.
+  /// s, the time at which noticeable impacts first came so close together that their order is not
+  /// known; NaN if it always was.
   double lost = std::numeric_limits<double>::quiet_NaN();
   double last_impact = std::numeric_limits<double>::quiet_NaN();  ///< s, NaN before the first
   /// (n), 1 for the joints that struck at the last impact, or so shortly before it that doubles
@@ -41,7 +41,6 @@ class Impacts {
  private:
   bool bounce_in_turn(double t, double* y, bool begins);
   bool loses_order_of(const double* y);
-  bool any_struck_leaves(const double* y) const;
   bool capture(double t, const double* y);
   void book(Account account, double value, double* y) const;
 

@@ -29,6 +29,7 @@ struct WatchedChange {
   std::span<const double> before, after;  ///< the states
   bool jumped;                            ///< whether they differ by more than rounding
   bool at_start;
+  bool lost_order;                     ///< whether impacts came in an order that is unknown
   bool forward;                        ///< the direction of time
   const JointGuard* guard;             ///< whose zero it is; null for a time that is given
   const EquationsOfMotion& equations;  ///< with the modes and the holds from now on

@@ -100,6 +100,7 @@ bool Switching::begin(double t, double* y, bool forward) {
                      .after = {y, before.size()},
                      .jumped = strikes,
                      .at_start = true,
+                     .lost_order = false,
                      .forward = forward,
                      .guard = nullptr,
                      .equations = equations_});
@@ -176,6 +177,7 @@ bool Switching::cross(int k, double t, double* y) {
                    .after = {y, before.size()},
                    .jumped = jumped,
                    .at_start = false,
+                   .lost_order = impacts_.order().lost == t,
                    .forward = modes_.is_forward(),
                    .guard = guard ? &*guard : nullptr,
                    .equations = equations_});
