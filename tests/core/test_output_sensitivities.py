@@ -66,6 +66,29 @@ def test_energies_on_a_driven_pivot(field: str) -> None:
     np.testing.assert_allclose(found, np.moveaxis(right, -1, 0), rtol=0, atol=1e-12)
 
 
+def test_a_pivot_that_is_pushed_carries_all_along() -> None:
+    """A wheel that turns about its mass centre, at the pivot, is one mass that falls a t^2 / 2."""
+    m, g, start = 1.4, 9.807, 0.5
+    wheel = pc.Link(mass=m, length=1.2, center=0.0, inertia=0.0)
+    scene = pc.Scene(links=[wheel], gravity=g, effects=[E.RotorInertia(joint=1, armature=0.2)])
+    line = pc.events.TipLine(point=(0.3, 0.1), normal=(1.0, 0.5))
+    names = ["pivot.x", "pivot.y"]
+    how: Any = {"events": [line], "sensitivities": names} | EXACTLY
+    sol = pc.simulate(scene, (start, 3), 0.1, 1.5, **how)
+    found = sol.output_sensitivities(["x[1]", "y[1]", "vx[1]", "vy[1]", "kinetic", "potential"])
+    since = sol.t - start
+    none, way = 0 * since, since**2 / 2
+    places, rates = [[way, none], [none, way]], [[since, none], [none, since]]
+    right = [*places, *rates, [m * 0 * since, none], [none, -m * g * way]]
+    np.testing.assert_allclose(found, np.moveaxis(right, -1, 0), rtol=0, atol=1e-11)
+    (moved,) = sol.event_sensitivities()
+    at, angle = sol.events[0].t, sol.events[0].q[:, 0]
+    speed = 1.2 * 1.5 * (0.5 * np.cos(angle) - np.sin(angle))  # of the tip, along the normal
+    by = -0.5 * (at - start) ** 2 / speed
+    assert len(at)
+    np.testing.assert_allclose(moved.t, np.stack([by, 0.5 * by], axis=-1), rtol=1e-10)
+
+
 def test_the_energy_of_a_free_chain_is_that_of_its_start() -> None:
     scene, q0, qd0 = TEXTBOOK, np.array([0.5, 1.1]), np.array([0.3, -2.0])
     names = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]", "gravity", "link[1].mass"]

@@ -134,6 +134,7 @@ def test_whatever_is_kept_start_end_and_drift_are_the_runs(asked, among, pendcor
 SAID = [
     ("step = 0.01\nrtol = 1e-6\n", 0, r"  method            dopri5, step 0\.01\n"),
     ("rtol = 0.1\natol = 0.1\n", 0, "too large to trust this run: tighten rtol and atol"),
+    ('sensitivities = ["gravity", "q0[1]"]\n', 0, r"  derivatives +by gravity, q0\[1\]\n"),
     ("t_eval = [4.0]\nmax_steps = 5\n", 1, "largest reaction +among the 0 kept times"),
     ("t_eval = [4.0]\nmax_steps = 5\n", 1, r"\n  end +t = 0\.\d+ s, q = \(0\.7"),
 ]

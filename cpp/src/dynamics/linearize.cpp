@@ -169,6 +169,15 @@ Matrix responses_to(const std::vector<Input>& inputs, const Scene& scene, const 
   return responses;
 }
 
+ParameterChoice choice_of(const Scene& scene, const std::vector<std::string>& names) {
+  try {
+    return {scene, names};
+  } catch (const std::invalid_argument& unknown) {
+    throw std::invalid_argument(std::string("inputs: ") + unknown.what() +
+                                "; others are torque[j], pivot.x and pivot.y");
+  }
+}
+
 }  // namespace
 
 Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd,
@@ -214,7 +223,7 @@ Linearization Equations::linearize(double t, const Numbers& q, const Numbers& qd
     (*compiled_->derivatives)(t, q.data(), qd.data(), found.by.by_q, found.by.by_qd);
     accelerations_in_force(equations, t, q.data(), qd.data(), found.qdd.data());
     if (!names.empty()) {
-      const MechanismAlong along(scene, modes, t, true, ParameterChoice(scene, names));
+      const MechanismAlong along(scene, modes, t, true, choice_of(scene, names));
       along.refuse_corners();
       compiled_->by_parameters.compute(along.with_all_slopes(), t, q, qd, found.qdd,
                                        compiled_->free_joints(), found.by_parameters);

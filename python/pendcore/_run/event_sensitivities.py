@@ -11,7 +11,6 @@ from pendcore._messages.arguments import Floats
 from pendcore._run.sensitivities import derivatives_of, sensitivities_there
 from pendcore._run.solution import Solution
 from pendcore._scene.outputs import outputs_at
-from pendcore._scene.scene import Scene
 from pendcore.events import Event, Found, Function, JointAngle, LinkAngle, RateZero, TipLine
 
 BESIDE = 1e-10
@@ -74,7 +73,7 @@ def sensitivities_at_events(solution: Solution) -> list[EventSensitivities]:
 def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     """Return the derivatives of the time and the state, (1 + 2n, m); NaN where there are none."""
     S, rates = along.at(one.t, one.y)
-    by_state, by_names, by_time = _slopes(event, one, along.scene, along.names)
+    by_state, by_names, by_time = _slopes(event, one, along)
     terms = by_state * rates
     along_the_run = by_time + terms.sum()
     if abs(along_the_run) <= ROUNDING * (abs(by_time) + np.abs(terms).sum()):
@@ -92,6 +91,7 @@ class _Along:
     def __init__(self, solution: Solution) -> None:
         self.scene, self.names = solution.scene, solution.sensitivity_names
         stats, (start, end) = solution.stats, solution.t_span
+        self.start = start
         self.mean_step = abs(solution.t_reached - start) / max(stats.accepted, 1)
         times = [t for found in solution.events for t in found.t.tolist()]
         sides = [t for time in times for t in self.beside(time)]
@@ -122,10 +122,9 @@ class _Along:
         return np.append(qd, self.scene.accelerations(t, q, qd))
 
 
-def _slopes(
-    event: Event, one: Found, scene: Scene, names: tuple[str, ...]
-) -> tuple[Floats, Floats, float]:
+def _slopes(event: Event, one: Found, along: _Along) -> tuple[Floats, Floats, float]:
     """Return the derivatives of an event's function by the state, (2n,), by the names and by t."""
+    scene, names = along.scene, along.names
     n, by_time = len(scene.links), 0.0
     match event:
         case Function(f):
@@ -142,7 +141,8 @@ def _slopes(
         case TipLine(normal=normal):
             shares = {f"x[{n}]": normal[0], f"y[{n}]": normal[1]}
             by_time = float(normal @ scene.velocities(one.t, one.q, one.qd)[0])  # of the pivot
-    there = outputs_at(scene, np.asarray(one.t), one.y, names, [*shares])
+    t = np.asarray(one.t)
+    there = outputs_at(scene, t, one.y, names, [*shares], since=one.t - along.start)
     share = np.array([*shares.values()])
     return share @ there.by_state, share @ there.by_names, by_time
 

@@ -23,12 +23,13 @@ def output_sensitivities(
     S, states = sensitivities_there(solution), solution.y.T
     wanted = different_names("outputs", outputs)
     times = solution.t if t is None else times_within(solution, t)
+    flat = times.reshape(-1)
     if t is not None:
-        S, states = along(solution, times.reshape(-1))
+        S, states = along(solution, flat)
     scene, names, rows = solution.scene, solution.sensitivity_names, None
     if any(str(name).startswith("qdd[") for name in wanted):
-        rows = _accelerations(scene, times.reshape(-1), states, names)
-    found = outputs_at(scene, times.reshape(-1), states, names, wanted, rows)
+        rows = _accelerations(scene, flat, states, names)
+    found = outputs_at(scene, flat, states, names, wanted, rows, flat - solution.t_span[0])
     by_names: Floats = found.by_state @ S + found.by_names
     return by_names.reshape(*times.shape, *by_names.shape[1:])
 

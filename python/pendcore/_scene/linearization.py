@@ -134,7 +134,8 @@ class Linearization:
 
 def different_names(argument: str, given: object) -> tuple[Any, ...]:
     """Return what a list of names holds, in which none stands twice."""
-    names = listed_names(argument, given, "qd[1]", object)
+    example = "torque[1]" if argument == "inputs" else "qd[1]"
+    names = listed_names(argument, given, example, object)
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{argument}: {name!r} stands twice")

@@ -26,6 +26,7 @@ ENERGIES = {
 """What each takes of kinetic and potential energy."""
 WITH_ENERGY = (Payload, RotorInertia, TorsionalSpring)
 """The effects, beside a driven pivot, that energies depend on."""
+PUSHES = ("pivot.x", "pivot.y")
 _NAME = re.compile(rf"({'|'.join(KINDS)})\[([1-9]\d*)\]")
 _OF_EFFECT = re.compile(r"effect\[(\d+)\]\.(.+)")
 _WAVE = re.compile(r"([xy])\.(amplitude|angular_frequency|phase)")
@@ -54,11 +55,12 @@ def outputs_at(
     names: Sequence[str],
     outputs: Sequence[str],
     accelerations: Rows | None = None,
+    since: Floats | float = 0.0,
 ) -> Rows:
     """Return outputs at times (...) and states (..., 2n), and their derivatives.
 
-    What is no parameter of the scene among the names, such as a torque, changes ``accelerations``
-    alone; only outputs "qdd[i]" need these.
+    A torque changes ``accelerations`` alone, which only outputs "qdd[i]" need. So do "pivot.x" and
+    "pivot.y", unless the pivot has been pushed for some time, ``since`` (...), s.
     """
     n = len(scene.links)
     places = [_place_of(name, n) for name in outputs]
@@ -76,9 +78,9 @@ def outputs_at(
         rows["qdd"] = accelerations
     wanted = {kind for kind, _ in places}
     if not wanted.isdisjoint(KINDS[5:]):
-        rows |= _ends(scene, t, q, qd, names)
+        rows |= _ends(scene, t, q, qd, names, since)
     if not wanted.isdisjoint(ENERGIES):
-        rows |= _energies(scene, t, q, qd, names)
+        rows |= _energies(scene, t, q, qd, names, since)
     p, lead = len(outputs), x.shape[:-1]
     result = Rows(*(np.zeros((*lead, p, *more)) for more in ((), (2 * n,), (len(names),))))
     for row, (kind, i) in enumerate(places):
@@ -103,7 +105,9 @@ def _place_of(name: object, n: int) -> tuple[str, int]:
     )
 
 
-def _ends(scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str]) -> dict[str, Rows]:
+def _ends(
+    scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str], since: Floats | float
+) -> dict[str, Rows]:
     """Return places and velocities of the ends of the links.
 
     With u = (cos q, sin q) along each link, the end of link i moves with all links up to i.
@@ -123,7 +127,7 @@ def _ends(scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str]) 
     ends = np.concatenate([scene.positions(t, q), scene.velocities(t, q, qd)], axis=-1)
     by_names = np.zeros((*q.shape[:-1], 4, n, len(names)))
     for k, name in enumerate(names):
-        by_names[..., k] = _of_the_pivot(scene, name, t)[..., np.newaxis]
+        by_names[..., k] = _of_the_pivot(scene, name, t, since)[..., np.newaxis]
         if place := re.fullmatch(r"link\[(\d+)\]\.length", name):
             i = int(place[1]) - 1  # the end of this link, and those of the links beyond it
             s, c, rate = np.sin(q[..., i]), np.cos(q[..., i]), qd[..., i]
@@ -134,9 +138,13 @@ def _ends(scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str]) 
     }
 
 
-def _of_the_pivot(scene: Scene, name: str, t: Floats) -> Floats:
+def _of_the_pivot(scene: Scene, name: str, t: Floats, since: Floats | float) -> Floats:
     """Return the derivatives of x, y, vx and vy of the pivot by a name, (..., 4)."""
     found = np.zeros((*np.shape(t), 4))
+    if name in PUSHES:
+        axis = PUSHES.index(name)
+        found[..., axis], found[..., axis + 2] = 0.5 * np.square(since), since
+        return found
     effect, field = _effect_of(scene, name)
     if (place := _WAVE.fullmatch(field)) and isinstance(effect, DrivenPivot):
         wave = getattr(effect, place[1])
@@ -159,7 +167,7 @@ def _effect_of(scene: Scene, name: str) -> tuple[object, str]:
 
 
 def _energies(
-    scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str]
+    scene: Scene, t: Floats, q: Floats, qd: Floats, names: Sequence[str], since: Floats | float
 ) -> dict[str, Rows]:
     """Return kinetic, potential and total energy; their derivatives are exact to rounding.
 
@@ -183,8 +191,9 @@ def _energies(
     by_names = np.zeros((*values.shape, len(names)))
     for k, name in enumerate(names):
         effect, _ = _effect_of(scene, name)
-        if isinstance(effect, DrivenPivot):
-            by_names[..., k] = _energies_by_the_pivot(scene, name, t, q, qd)
+        if isinstance(effect, DrivenPivot) or name in PUSHES:
+            by_the_pivot = _of_the_pivot(scene, name, t, since)
+            by_names[..., k] = _energies_by_the_pivot(scene, by_the_pivot, t, q, qd)
         elif isinstance(effect, WITH_ENERGY) or name == "gravity" or name.startswith("link["):
             step, further = _on_from(scene, name, names)
             one, two = (_both(other, t, x) for other in further)
@@ -215,8 +224,10 @@ def _on_from(scene: Scene, name: str, names: Sequence[str]) -> tuple[float, list
         return step, [scene.with_parameters(one) for one in changed]
 
 
-def _energies_by_the_pivot(scene: Scene, name: str, t: Floats, q: Floats, qd: Floats) -> Floats:
-    """Return the derivatives of both energies by a parameter of a driven pivot, (..., 2).
+def _energies_by_the_pivot(
+    scene: Scene, by_the_pivot: Floats, t: Floats, q: Floats, qd: Floats
+) -> Floats:
+    """Return the derivatives of both energies by what moves the pivot, (..., 2).
 
     They are those by the pivot's velocity, which is the momentum, and by its depth.
     """
@@ -226,6 +237,6 @@ def _energies_by_the_pivot(scene: Scene, name: str, t: Floats, q: Floats, qd: Fl
         at_joints[i : i + 2] += [link.mass * (1 - share), link.mass * share]
     at_joints[-1] += sum(one.mass for one in scene.effects if isinstance(one, Payload))
     momentum = at_joints @ scene.velocities(t, q, qd)
-    _, y, vx, vy = np.moveaxis(_of_the_pivot(scene, name, t), -1, 0)
+    _, y, vx, vy = np.moveaxis(by_the_pivot, -1, 0)
     kinetic = momentum[..., 0] * vx + momentum[..., 1] * vy
     return np.stack([kinetic, -scene.gravity * at_joints.sum() * y], axis=-1)

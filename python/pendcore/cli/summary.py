@@ -117,9 +117,12 @@ def _asked(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "mobility", f"M = 3 n - 2 c5 - c4 = 3*{n} - 2*{c5} - {c4} = {freedom}"
     yield "start", f"t = {start['t']:.6g} s, {_state(start, in_degrees=True)}"
     yield "end", f"t = {run.pop('t_end'):.6g} s"
+    names = run.pop("sensitivities", [])
     brief = {key: f"({listed(x)})" if isinstance(x, list) else x for key, x in run.items()}
     told = (f"{key} {x}" for key, x in brief.items() if key != "method")
     yield "method", ", ".join([run["method"], *told])
+    if names:
+        yield "derivatives", "by " + ", ".join(names)
     words = [absence["kind"].replace("_", " ") for absence in found["not_simulated"]]
     yield "not simulated", ", ".join(words)
 
