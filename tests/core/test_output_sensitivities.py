@@ -270,6 +270,7 @@ def test_accelerations_of_a_joint_that_sticks_have_none() -> None:
                    r"potential, energy: did you mean 'x\[\d\]'\?"),
         (["kinetik"], "'kinetik': .*: did you mean 'kinetic'"),
         (["x[0]"], r"'x\[0\]': must be one of"),
+        ([["x[1]"]], r"outputs: \['x\[1\]'\]: must be one of"),
         (["of all"], "'of all': must be one of .* or kinetic, potential, energy$"),
         (["energy", "energy"], "'energy' stands twice"),
     ],

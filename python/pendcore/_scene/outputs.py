@@ -92,8 +92,8 @@ def outputs_at(
 
 def _place_of(name: object, n: int) -> tuple[str, int]:
     """Return the kind of an output, and its place among those of this kind."""
-    if name in ENERGIES:
-        return str(name), 0
+    if isinstance(name, str) and name in ENERGIES:
+        return name, 0
     place = _NAME.fullmatch(name) if isinstance(name, str) else None
     if place is not None and int(place[2]) <= n:
         return place[1], int(place[2]) - 1
