@@ -167,7 +167,7 @@ def test_a_dense_output_that_no_memory_holds_is_refused(monkeypatch):
     run = simulate(TEXTBOOK, store="end")
     needed = 8 * run.stats.accepted * 4 * (simulate(TEXTBOOK)._run.dense_degree + 1)
     monkeypatch.setattr(dense_output, "MOST_BYTES", needed - 1)
-    with pytest.raises(ValueError, match=SENTENCE + "it would take .* GiB"):
+    with pytest.raises(ValueError, match=SENTENCE + "made anew, .* GiB: must be at most"):
         run.plot(ax=axes(2))
     monkeypatch.setattr(dense_output, "MOST_BYTES", needed)
     run.plot(ax=axes(2))

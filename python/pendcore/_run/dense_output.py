@@ -36,7 +36,8 @@ def _dense(solution: Solution, **changed: Any) -> Solution:
     dimension = 2 * len(solution.scene.links) + len(solution._run.ledger)
     size = 8 * solution.stats.accepted * (solution._run.dense_degree + 1) * dimension  # bytes
     if size > MOST_BYTES:
-        raise _refusal(solution, f"it would take {size / 2**30:.3g} GiB to have it")
+        given = f"{size / 2**30:.3g} GiB: must be at most {MOST_BYTES / 2**30:.3g}"
+        raise _refusal(solution, f"made anew, that of all steps takes {given}: run a shorter span")
     again = simulated_anew(solution, store="dense", **changed)
     if not (ends_alike(again, solution) if changed else _is_the_same(again, solution)):
         raise _refusal(solution, ANOTHER_COURSE)
@@ -106,4 +107,4 @@ def _refusal(solution: Solution, reason: str) -> ValueError:
         solution._run.evaluate(solution._run.t[:0])
     except ValueError as refused:
         return ValueError(f"{refused}; {reason}")
-    return ValueError(f"the run: {reason}")
+    return ValueError(f"dense output: {reason}")
