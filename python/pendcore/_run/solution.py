@@ -561,7 +561,8 @@ class Solution:
         """Return how places, velocities and energies change with each name, at fixed times.
 
         With S the sensitivities and h an output, that is ``h_y S + h_p``: a longer link moves the
-        tip at the same angles, too.
+        tip at the same angles, too, and a pivot that is pushed from the start of the run on,
+        ``"pivot.x"``, carries places, velocities and energies along.
 
         Parameters
         ----------

@@ -325,7 +325,7 @@ class Scene:
             relative to the link before; ``"x[2]"``, ``"y[2]"``, ``"vx[2]"``, ``"vy[2]"`` of the end
             of a link; ``"kinetic"``, ``"potential"`` and their sum, ``"energy"``, J. The state,
             unless given. Where ``"pivot.x"`` or ``"pivot.y"`` is an input,
-            places and velocities change relative to the pivot.
+            places, velocities and energies change relative to the pivot.
         torques : array_like, (k,), optional
             Torques that are held in the joints of ``inputs`` at that state, N m: those of `trim`
             make it an equilibrium.
