@@ -124,6 +124,34 @@ def test_a_pivot_that_is_pushed_is_gravity_turned(links: int, more: list[E.Effec
     np.testing.assert_allclose(by("pivot.x", 0.0, start), across, rtol=1e-9, atol=1e-11)
 
 
+@pytest.mark.parametrize("begin", [100.0, -3.0])
+def test_a_pivot_is_pushed_from_rest_whenever_a_run_begins(begin: float) -> None:
+    """Air feels the velocity of the pivot, which was that of a push since t = 0."""
+    drag = E.RodDrag(link=1, drag_coefficient=1.0, diameter=0.3, air_density=5.0)
+    scene = pc.Scene(links=[pc.Link(mass=1.0, length=0.7)], effects=[drag])
+
+    def by_push(start: float) -> NDArray[np.float64]:
+        sol = pc.simulate(scene, (start, start + 1), 0.3, 1.0, sensitivities=["pivot.x", "pivot.y"],
+                          rtol=1e-11, atol=1e-13)  # fmt: skip
+        assert sol.sensitivities is not None
+        return sol.sensitivities[-1]
+
+    np.testing.assert_allclose(by_push(begin), by_push(0.0), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["gravity", "pivot.x", "q0[1]", "torque[1]"])
+def test_a_name_that_stands_twice_is_refused(name: str) -> None:
+    """Of two parameters of the same name, the first had zeros."""
+    with pytest.raises(ValueError, match="stands twice: leave one out"):
+        pc.simulate(pc.Scene.textbook(), (0, 1), 0.5, sensitivities=[name, name])
+
+
+@pytest.mark.parametrize("names", [["pivot.x", "effect[1].y"], ["torque[1]", "effect[1].constant"]])
+def test_effects_that_only_inputs_have_have_no_names(names: list[str]) -> None:
+    with pytest.raises(ValueError, match=r"effect\[1\].*it has no effects"):
+        pc.simulate(pc.Scene.textbook(), (0, 1), 0.5, sensitivities=names)
+
+
 @pytest.mark.parametrize("method", ["auto", "dopri5", "dop853", "taylor", "radau5"])
 @pytest.mark.parametrize("links", [1, 2, 4])
 def test_a_chain_at_rest_has_nothing_but_rounding(links: int, method: str) -> None:
@@ -137,6 +165,7 @@ def test_a_chain_at_rest_has_nothing_but_rounding(links: int, method: str) -> No
     sol = pc.simulate(scene, (0, 4), np.pi / 2, method=method, sensitivities=names)
     assert sol.sensitivities is not None
     assert np.abs(sol.sensitivities).max() < 1e-8
+    assert np.isfinite(sol.extreme_sensitivities().sensitivities[:, :links]).all()
 
 
 def test_a_chain_of_many_links_keeps_within_its_memory() -> None:

@@ -155,3 +155,12 @@ def test_runs_without_derivatives_or_of_another_course_have_none() -> None:
     damping[0] = 0.2
     with pytest.raises(ValueError, match="simulated anew it takes another course"):
         sol.sensitivities_at(0.5)
+
+
+@pytest.mark.parametrize("end", [1e-300, -1e-300])
+def test_times_of_a_span_whose_products_vanish(end: float) -> None:
+    sol = pc.simulate(pc.Scene.textbook(), (0, end), 0.3, t_eval=[end / 2], sensitivities=["q0[1]"])
+    assert sol.t.tolist() == [end / 2]
+    at_half, at_quarter = sol.sensitivities_at([end / 2, end / 4])
+    np.testing.assert_array_equal(at_half, sol.sensitivities[0])
+    np.testing.assert_allclose(2 * at_quarter[2:], at_half[2:], rtol=1e-12)  # of the rates

@@ -220,7 +220,7 @@ void DefectCorrection::keep_errors(const Step& step) {
     const std::size_t first = next_time_;
     for (; next_time_ < t_eval_.size(); ++next_time_) {
       const double t = t_eval_[next_time_];
-      if ((t - step.t) * step.h > 0.0) break;
+      if ((t - step.t) * std::copysign(1.0, step.h) > 0.0) break;
       if (t == step.t) continue;
       theta.push_back((t - step.t_start) / step.h);
     }

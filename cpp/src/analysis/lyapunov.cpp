@@ -123,7 +123,7 @@ class GrowthRecorder final : public Observer {
   StepEnd step_accepted(StepOutput& step, const TwoDouble& t_old, double h, double t_new) override {
     polynomial_.clear();
     was_stepped_ = true;
-    while (next_ < times_.size() && (times_[next_] - t_new) * h <= 0.0) {
+    while (next_ < times_.size() && (times_[next_] - t_new) * std::copysign(1.0, h) <= 0.0) {
       const double t = times_[next_];
       if (t == t_new) {
         step.get_new_state(state_.data());

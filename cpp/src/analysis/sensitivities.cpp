@@ -38,8 +38,8 @@ struct Sensitivities::Variation {
   int padded_names() const { return static_cast<int>((now.cols() + 3) / 4 * 4); }
   /// The share of a step at which the next time that is kept lies; infinite beyond the step.
   double next_share(const WatchedStep& step) const {
-    const bool is_due =
-        keeps_times && next_time < t_eval.size() && (t_eval[next_time] - step.t) * step.h <= 0.0;
+    const bool is_due = keeps_times && next_time < t_eval.size() &&
+                        (t_eval[next_time] - step.t) * std::copysign(1.0, step.h) <= 0.0;
     if (!is_due) return std::numeric_limits<double>::infinity();
     return t_eval[next_time] == step.t ? step.share : (t_eval[next_time] - t_start) / step.h;
   }

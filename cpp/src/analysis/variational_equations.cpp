@@ -28,12 +28,14 @@ int number_of(const std::string& name, const std::string& kind, int n) {
 /// A pivot with a constant acceleration, beside what else moves it.
 struct PushedPivot {
   double x = 0.0, y = 0.0;  ///< m/s^2
+  double start = 0.0;       ///< s, until which it has no velocity, which air would feel
 
   static constexpr EffectInfo info{.name = "PushedPivot",
                                    .kind = "pushed_pivot",
                                    .sentence = "A pivot with a constant acceleration.",
                                    .law = "x_0'' = x,  y_0'' = y",
                                    .source = "d'Alembert's principle",
+                                   .depends_on_time = true,
                                    .moves_pivot = true,
                                    .has_series = true};
   static constexpr auto parameters =
@@ -44,16 +46,44 @@ class PushedPivotBehaviour final : public EffectOf<PushedPivot> {
  public:
   using EffectOf::EffectOf;
   std::optional<PivotLaw> pivot_law(int /*mode*/) const override {
-    return PivotLaw{.x = {.held = given_.x}, .y = {.held = given_.y}};
+    return PivotLaw{.x = {.held = given_.x}, .y = {.held = given_.y}, .start = given_.start};
   }
 };
 std::shared_ptr<const EffectBehaviour> behaviour(PushedPivot given) {
   return std::make_shared<PushedPivotBehaviour>(given);
 }
 
+/// Those of the names that are no starts.
+ParameterChoice choice_of(const Scene& scene, std::vector<std::string> names) {
+  const auto n = static_cast<int>(scene.links.size());
+  std::erase_if(names, [n](const std::string& name) {
+    return number_of(name, "q0", n) >= 0 || number_of(name, "qd0", n) >= 0;
+  });
+  for (const std::string& name : names) {
+    if (!name.starts_with("q[") && !name.starts_with("qd[")) continue;
+    throw std::invalid_argument("sensitivities: \"" + name +
+                                "\": a start is named q0[i] or qd0[i]");
+  }
+  try {
+    return {scene, names};
+  } catch (const std::invalid_argument& unknown) {
+    throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
+                                "; others are q0[i], qd0[i], torque[j], pivot.x and pivot.y");
+  }
+}
+
 /// The same scene with a motor that gives nothing in each joint whose torque is named, and a pivot
 /// that nothing pushes if its acceleration is; and the names with those of their constants.
 Scene with_inputs(Scene scene, std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::ranges::count(names, name) == 1) continue;
+    throw std::invalid_argument("sensitivities: \"" + name + "\": stands twice: leave one out");
+  }
+  std::vector<std::string> others = names;
+  std::erase_if(others, [](const std::string& name) {
+    return name.starts_with("pivot.") || name.starts_with("torque[");
+  });
+  choice_of(scene, others);  // refuses the names that only the effects of inputs would have
   for (std::string& name : names) {
     if (name != "pivot.x" && name != "pivot.y") continue;
     if (scene.effects.empty() || !scene.effects.back().is<PushedPivot>()) {
@@ -74,25 +104,6 @@ Scene with_inputs(Scene scene, std::vector<std::string>& names) {
     name = "effect[" + std::to_string(scene.effects.size()) + "].constant";
   }
   return scene;
-}
-
-/// Those of the names that are no starts.
-ParameterChoice choice_of(const Scene& scene, std::vector<std::string> names) {
-  const auto n = static_cast<int>(scene.links.size());
-  std::erase_if(names, [n](const std::string& name) {
-    return number_of(name, "q0", n) >= 0 || number_of(name, "qd0", n) >= 0;
-  });
-  for (const std::string& name : names) {
-    if (!name.starts_with("q[") && !name.starts_with("qd[")) continue;
-    throw std::invalid_argument("sensitivities: \"" + name +
-                                "\": a start is named q0[i] or qd0[i]");
-  }
-  try {
-    return {scene, names};
-  } catch (const std::invalid_argument& unknown) {
-    throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
-                                "; others are q0[i], qd0[i], torque[j], pivot.x and pivot.y");
-  }
 }
 
 void require_smooth(const Scene& scene, const ParameterChoice& choice, std::size_t which) {
@@ -173,6 +184,9 @@ Matrix VariationalEquations::changes_of_start() const {
 }
 
 void VariationalEquations::choose_laws(double t, const double* y) {
+  for (Effect& one : scene_.effects) {
+    if (one.is<PushedPivot>()) one = PushedPivot{.start = t};
+  }
   if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
   modes_ = modes_at(scene_, t, y, y + n_);
   put_along(t, true);

@@ -27,8 +27,9 @@ namespace pendcore {
 class VariationalEquations {
  public:
   /// Each name is "q0[i]" or "qd0[i]", i counted from 1, a constant "torque[j]" in a joint or a
-  /// constant acceleration of the pivot, "pivot.x" or "pivot.y", beside what effects give, or a
-  /// parameter (parameters.hpp). Throws std::invalid_argument for another name.
+  /// constant acceleration of the pivot, "pivot.x" or "pivot.y", from rest at the start of the run,
+  /// beside what effects give, or a parameter (parameters.hpp). Throws std::invalid_argument for
+  /// another name, and for one that stands twice.
   VariationalEquations(const Scene& scene, const std::vector<std::string>& names);
   VariationalEquations(const VariationalEquations&) = delete;  // the Jacobian refers to the modes
   VariationalEquations& operator=(const VariationalEquations&) = delete;
@@ -65,8 +66,9 @@ class VariationalEquations {
   /// (n, parameters).
   void at(double t, const double* y, const Eigen::Ref<Matrix>& by_q,
           const Eigen::Ref<Matrix>& by_qd, const Eigen::Ref<Matrix>& by_parameters);
-  /// The largest entry of d qdd/d p for each parameter, of links at rest at other angles than
-  /// those of a state: what it may be of which the last bits of these angles leave rounding.
+  /// The largest entry of d qdd/d p for each parameter, of links at rest at angles far from those
+  /// of a state. Where the entries vanish at the state itself, as at an equilibrium, its last bits
+  /// leave a rounding of this size times epsilon.
   Vector sizes_elsewhere(double t, const double* y);
   Vector rates(double t, const double* y) const;  ///< (qd, qdd)
   /// How large d qdd/d p may be by rounding alone, in units of epsilon, at the last point.

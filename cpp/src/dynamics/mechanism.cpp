@@ -111,17 +111,17 @@ std::optional<std::vector<double>> slopes_along(const Scene& scene, const std::v
       return !ahead[k].empty() && !behind[k].empty();
     };
     if (!take_numbers(0) || !take_numbers(1)) return false;
-    std::size_t lines = 0;  // most numbers are linear in most parameters
-    for (; lines < numbers.size(); ++lines) {
-      const std::size_t i = lines;
+    std::size_t linear = 0;  // most numbers are so in most parameters
+    for (; linear < numbers.size(); ++linear) {
+      const std::size_t i = linear;
       const auto slope =
           slope_of_line(numbers[i], {ahead[0][i], ahead[1][i]}, {behind[0][i], behind[1][i]}, h);
       if (!slope) break;
       slopes[i] = *slope;
     }
-    if (lines == numbers.size()) return true;
+    if (linear == numbers.size()) return true;
     if (!take_numbers(2) || !take_numbers(3)) return false;
-    for (std::size_t i = lines; i < numbers.size(); ++i) {
+    for (std::size_t i = linear; i < numbers.size(); ++i) {
       const auto slope = extrapolated_slope(
           numbers[i], {ahead[0][i], ahead[1][i], ahead[2][i], ahead[3][i]},
           {behind[0][i], behind[1][i], behind[2][i], behind[3][i]}, h, std::abs(value));

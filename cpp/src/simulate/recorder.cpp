@@ -1,6 +1,7 @@
 #include "simulate/recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "scene/effects_of_scene.hpp"
@@ -107,7 +108,7 @@ void Recorder::sample_before(StepOutput& output, const TwoDouble& t_old, double 
   const std::vector<double>& samples = solution_.options.t_eval;
   const std::size_t first = solution_.t.size();
   std::size_t end = first;
-  while (end < samples.size() && (samples[end] - t_end) * h < 0.0) ++end;
+  while (end < samples.size() && (samples[end] - t_end) * std::copysign(1.0, h) < 0.0) ++end;
   if (end == first) return;
   for (std::size_t k = first; k < end; ++k) solution_.t.push_back(samples[k]);
   solution_.states.resize(end * dimension_);

@@ -78,12 +78,15 @@ def sensitivities_at_extremes(solution: Solution) -> ExtremeSensitivities:
     curve = _Curve(with_every_step(solution))
     found = {at: curve.extremes(at[1], 1.0 if at[0] else -1.0) for at in np.ndindex(2, 2 * n)}
     around = _Around(solution, [place for places in found.values() for place in places])
+    known = solution.scene.parameters()
+    sizes = np.array([max(1.0, abs(known.get(name, 1.0))) for name in solution.sensitivity_names])
     values, t, by = np.empty((2, 2 * n)), np.empty((2, 2 * n)), np.empty((2, 2 * n, m))
     for at, places in found.items():
         values[at], t[at] = places[0].value, places[0].t
         each = np.array([around.derivative(place, at[1]) for place in places])
-        alike = np.abs(each - each[0]).max(axis=0) <= ALIKE * around.largest(places)
-        by[at] = np.where(alike, each[0], np.nan)
+        by_rounding = curve.tie(places[0].value) / sizes
+        same = np.maximum(ALIKE * around.largest(places), by_rounding)
+        by[at] = np.where(np.abs(each - each[0]).max(axis=0) <= same, each[0], np.nan)
     return ExtremeSensitivities(values, t, by)
 
 
