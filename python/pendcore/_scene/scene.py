@@ -324,8 +324,8 @@ class Scene:
             ``"q[1]"``, ``"qd[1]"``, ``"qdd[1]"`` of a link; ``"phi[2]"``, ``"phid[2]"`` of a joint,
             relative to the link before; ``"x[2]"``, ``"y[2]"``, ``"vx[2]"``, ``"vy[2]"`` of the end
             of a link; ``"kinetic"``, ``"potential"`` and their sum, ``"energy"``, J. The state,
-            unless given. Where ``"pivot.x"`` or ``"pivot.y"`` is an input,
-            places, velocities and energies change relative to the pivot.
+            unless given. Inputs ``"pivot.x"`` and ``"pivot.y"`` have not moved the pivot yet:
+            places, velocities and energies do not change with them.
         torques : array_like, (k,), optional
             Torques that are held in the joints of ``inputs`` at that state, N m: those of `trim`
             make it an equilibrium.
