@@ -1,9 +1,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 #include <vector>
 
 #include "arguments.hpp"
@@ -32,11 +35,57 @@ Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py
   return scene;
 }
 
-/// A scene as Python holds it. Its attribute keeps the functions among its effects alive, and the
-/// collector sees it: a function may know the scene.
+/// What is made once of a scene and used by one call at a time. A function among the effects may
+/// ask for it again in the middle of a call, or let another thread do so: it gets one of its own.
+template <class Made>
+class Reused {
+ public:
+  template <class Make, class Use>
+  auto use(const Make& make, const Use& use) {
+    if (is_in_use_.test_and_set()) {
+      Made other = make();
+      return use(other);
+    }
+    try {
+      if (!made_) made_.emplace(make());
+      auto result = use(*made_);
+      is_in_use_.clear();
+      return result;
+    } catch (...) {  // which may have left it in another mode
+      made_.reset();
+      is_in_use_.clear();
+      throw;
+    }
+  }
+
+ private:
+  std::optional<Made> made_{};
+  std::atomic_flag is_in_use_ = ATOMIC_FLAG_INIT;
+};
+
+/// A scene as Python holds it.
+struct SceneOfPython : Scene {
+  explicit SceneOfPython(Scene scene) : Scene(std::move(scene)) {}
+
+  template <class Use>
+  auto with_equations(const Use& use) {
+    return equations_.use([this] { return Equations(*this); }, use);
+  }
+  template <class Use>
+  auto with_equations_of_motion(const Use& use) {
+    return of_motion_.use([this] { return equations_of_motion(*this); }, use);
+  }
+
+ private:
+  Reused<Equations> equations_;
+  Reused<EquationsOfMotion> of_motion_;
+};
+
+/// Its attribute keeps the functions among its effects alive, and the collector sees it: a function
+/// may know the scene.
 py::object scene_of_python(const std::vector<LinkNumbers>& links, double gravity,
                            const py::list& effects) {
-  py::object scene = py::cast(make_scene(links, gravity, effects));
+  py::object scene = py::cast(std::make_unique<SceneOfPython>(make_scene(links, gravity, effects)));
   scene.attr("effects") = effects;
   return scene;
 }
@@ -61,23 +110,24 @@ Array array_of(const std::vector<py::ssize_t>& shape, const Compute& compute) {
 }
 
 /// Without Equations, whose checks of every row would take a third of the time.
-Array acceleration_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
+Array acceleration_rows(SceneOfPython& scene, const Array& t, const Array& q, const Array& qd) {
   const FloatingPointEnvironment ieee;
   const auto n = static_cast<py::ssize_t>(scene.links.size());
   if (q.shape(1) != n || qd.shape(1) != n) throw py::value_error("q and qd: must be (m, n)");
-  const EquationsOfMotion equations = equations_of_motion(scene);
-  Array result({q.shape(0), n});
-  for (py::ssize_t i = 0; i < q.shape(0); ++i) {
-    accelerations(equations, t.at(i), q.data(i, 0), qd.data(i, 0), result.mutable_data(i, 0));
-  }
-  give_nan_one_sign(result);
-  return result;
+  return scene.with_equations_of_motion([&](const EquationsOfMotion& equations) {
+    Array result({q.shape(0), n});
+    for (py::ssize_t i = 0; i < q.shape(0); ++i) {
+      accelerations(equations, t.at(i), q.data(i, 0), qd.data(i, 0), result.mutable_data(i, 0));
+    }
+    give_nan_one_sign(result);
+    return result;
+  });
 }
 
 /// The accelerations of one state, without the conversions to arrays of rows that many states need.
 /// Returns nothing if t is not a finite number, or if q or qd are not n finite numbers: the caller
 /// then says which.
-std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py::handle q,
+std::optional<Array> acceleration_of_state(SceneOfPython& scene, py::handle t, py::handle q,
                                            py::handle qd) {
   const FloatingPointEnvironment ieee;
   const std::size_t n = scene.links.size();
@@ -89,21 +139,22 @@ std::optional<Array> acceleration_of_state(const Scene& scene, py::handle t, py:
       !std::isfinite(time) || !state.allFinite()) {
     return std::nullopt;
   }
-  Array result(static_cast<py::ssize_t>(n));
-  accelerations(equations_of_motion(scene), time, angles.data(), rates.data(),
-                result.mutable_data());
-  give_nan_one_sign(result);
-  return result;
+  return scene.with_equations_of_motion([&](const EquationsOfMotion& equations) {
+    Array result(static_cast<py::ssize_t>(n));
+    accelerations(equations, time, angles.data(), rates.data(), result.mutable_data());
+    give_nan_one_sign(result);
+    return result;
+  });
 }
 
 /// The derivatives of the accelerations by the angles and by the rates, (m, n, n) each.
-py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  Equations equations(scene);
+py::tuple jacobian_rows(SceneOfPython& scene, const Array& t, const Array& q, const Array& qd) {
   const py::ssize_t n = q.shape(1);
   Array by_q({q.shape(0), n, n});
   Array by_qd({q.shape(0), n, n});
   for (py::ssize_t i = 0; i < q.shape(0); ++i) {
-    const Derivatives found = equations.jacobian(t.at(i), row(q, i), row(qd, i));
+    const Derivatives found = scene.with_equations(
+        [&](Equations& equations) { return equations.jacobian(t.at(i), row(q, i), row(qd, i)); });
     std::copy_n(found.by_q.data(), n * n, by_q.mutable_data(i, 0, 0));
     std::copy_n(found.by_qd.data(), n * n, by_qd.mutable_data(i, 0, 0));
   }
@@ -112,10 +163,11 @@ py::tuple jacobian_rows(const Scene& scene, const Array& t, const Array& q, cons
   return py::make_tuple(by_q, by_qd);
 }
 
-Array reaction_forces(const Scene& scene, const Array& t, const Array& q, const Array& qd) {
-  Equations equations(scene);
-  return array_of({q.shape(0), q.shape(1), 2}, [&](py::ssize_t i) {
-    return equations.reactions(t.at(i), row(q, i), row(qd, i));
+Array reaction_forces(SceneOfPython& scene, const Array& t, const Array& q, const Array& qd) {
+  return scene.with_equations([&](Equations& equations) {
+    return array_of({q.shape(0), q.shape(1), 2}, [&](py::ssize_t i) {
+      return equations.reactions(t.at(i), row(q, i), row(qd, i));
+    });
   });
 }
 
@@ -139,7 +191,7 @@ py::array array_from(const Matrix& found) {
 /// The state, its rate, A and B. Returns nothing if t is not a finite number, q not n finite
 /// numbers, or qd neither n finite numbers nor one: the caller then says which. `torques` are held
 /// in the joints that are the inputs, or None.
-std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle q, py::handle qd,
+std::optional<py::tuple> linearize(SceneOfPython& scene, py::handle t, py::handle q, py::handle qd,
                                    const py::tuple& inputs, py::handle torques) {
   const std::size_t n = scene.links.size();
   std::vector<Input> given;
@@ -159,7 +211,8 @@ std::optional<py::tuple> linearize(const Scene& scene, py::handle t, py::handle 
   const Numbers angles(state.head(n)), rates(state.tail(n));
   Linearization found;
   if (torques.is_none()) {
-    found = Equations(scene).linearize(time, angles, rates, given);
+    found = scene.with_equations(
+        [&](Equations& equations) { return equations.linearize(time, angles, rates, given); });
   } else {
     const std::vector<double> held = numbers("torques", torques, "(k,)", given.size());
     require_size("torques", held, given.size());
@@ -185,8 +238,9 @@ py::array matrix_exponential(const Array& given) {
 void bind_scene(py::module_& module) {
   module.def("matrix_exponential", &matrix_exponential, py::arg("matrix"));
   module.def("scene", &scene_of_python, py::arg("links"), py::arg("gravity"), py::arg("effects"));
-  py::class_<Scene>(module, "Scene", py::dynamic_attr(),
-                    "A scene that was checked, as the core holds it.")
+  const py::class_<Scene> any_scene(module, "AnyScene");
+  py::class_<SceneOfPython, Scene>(module, "Scene", py::dynamic_attr(),
+                                   "A scene that was checked, as the core holds it.")
       .def_property_readonly("n", [](const Scene& scene) { return scene.links.size(); })
       .def_property_readonly("warnings", &plausibility_warnings)
       .def(
@@ -218,21 +272,23 @@ void bind_scene(py::module_& module) {
           py::arg("t"), py::arg("q"), py::arg("joints"))
       .def(
           "inverse_dynamics",
-          [](const Scene& scene, const Array& t, const Array& q, const Array& qd,
+          [](SceneOfPython& scene, const Array& t, const Array& q, const Array& qd,
              const Array& qdd) {
-            Equations equations(scene);
-            return array_of({q.shape(0), q.shape(1)}, [&](py::ssize_t i) {
-              return equations.inverse_dynamics(t.at(i), row(q, i), row(qd, i), row(qdd, i));
+            return scene.with_equations([&](Equations& equations) {
+              return array_of({q.shape(0), q.shape(1)}, [&](py::ssize_t i) {
+                return equations.inverse_dynamics(t.at(i), row(q, i), row(qd, i), row(qdd, i));
+              });
             });
           },
           py::arg("t"), py::arg("q"), py::arg("qd"), py::arg("qdd"))
       .def("reactions", &reaction_forces, py::arg("t"), py::arg("q"), py::arg("qd"))
       .def(
           "mass_matrix",
-          [](const Scene& scene, const Array& q) {
-            Equations equations(scene);
-            return array_of({q.shape(0), q.shape(1), q.shape(1)},
-                            [&](py::ssize_t i) { return equations.mass_matrix(row(q, i)); });
+          [](SceneOfPython& scene, const Array& q) {
+            return scene.with_equations([&](Equations& equations) {
+              return array_of({q.shape(0), q.shape(1), q.shape(1)},
+                              [&](py::ssize_t i) { return equations.mass_matrix(row(q, i)); });
+            });
           },
           py::arg("q"))
       .def(

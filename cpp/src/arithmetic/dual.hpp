@@ -173,12 +173,12 @@ PENDCORE_INLINE Dual<double, Along> before(const Dual<double, Along>& /*x*/) {
 template <class Along>
 PENDCORE_INLINE const Dual<double, Along>& before(const Dual<double, Along>& /*x*/,
                                                   const Dual<double, Along>& row_before) {
-  return row_before;
+  return row_before;  // NOLINT(bugprone-return-const-ref-from-parameter): rows stay in memory
 }
 template <class Along>
 PENDCORE_INLINE const Dual<double, Along>& after(const Dual<double, Along>& /*x*/,
                                                  const Dual<double, Along>& row_after) {
-  return row_after;
+  return row_after;  // NOLINT(bugprone-return-const-ref-from-parameter): rows stay in memory
 }
 
 template <class Row, class Along>
