@@ -16,7 +16,10 @@ def scene(
     links: list[tuple[float, float, float, float]], gravity: float, effects: list[tuple[str, Any]]
 ) -> Scene: ...
 
-class Scene:
+class AnyScene:
+    """A scene of the core; all that Python makes are `Scene`."""
+
+class Scene(AnyScene):
     n: Final[int]
     warnings: Final[list[str]]
     def run_warnings(self, q0: Sequence[float], t0: float, t_end: float) -> list[str]: ...
