@@ -35,8 +35,8 @@ Scene make_scene(const std::vector<LinkNumbers>& links, double gravity, const py
   return scene;
 }
 
-/// What is made once of a scene and used by one call at a time. A function among the effects may
-/// ask for it again in the middle of a call, or let another thread do so: it gets one of its own.
+/// Equations that a scene makes at its first call and keeps. One call uses them at a time: another
+/// thread, or a function among the effects that calls its own scene, gets equations of its own.
 template <class Made>
 class Reused {
  public:
@@ -51,7 +51,7 @@ class Reused {
       auto result = use(*made_);
       is_in_use_.clear();
       return result;
-    } catch (...) {  // which may have left it in another mode
+    } catch (...) {  // the equations may be in another mode
       made_.reset();
       is_in_use_.clear();
       throw;
@@ -63,7 +63,7 @@ class Reused {
   std::atomic_flag is_in_use_ = ATOMIC_FLAG_INIT;
 };
 
-/// A scene as Python holds it.
+/// A scene as Python holds it, with its equations.
 struct SceneOfPython : Scene {
   explicit SceneOfPython(Scene scene) : Scene(std::move(scene)) {}
 
@@ -81,8 +81,8 @@ struct SceneOfPython : Scene {
   Reused<EquationsOfMotion> of_motion_;
 };
 
-/// Its attribute keeps the functions among its effects alive, and the collector sees it: a function
-/// may know the scene.
+/// The attribute `effects` keeps the functions among them alive, and the collector sees it: a
+/// function may know the scene.
 py::object scene_of_python(const std::vector<LinkNumbers>& links, double gravity,
                            const py::list& effects) {
   py::object scene = py::cast(std::make_unique<SceneOfPython>(make_scene(links, gravity, effects)));
@@ -257,7 +257,8 @@ void bind_scene(py::module_& module) {
            py::arg("torques"))
       .def(
           "trim",
-          [](const Scene& scene, double t, const std::vector<double>& q, const py::tuple& joints) {
+          [](SceneOfPython& scene, double t, const std::vector<double>& q,
+             const py::tuple& joints) {
             std::vector<int> given;
             for (const py::handle joint : joints) {
               const Input input = input_of(joint);
@@ -267,7 +268,8 @@ void bind_scene(py::module_& module) {
               }
               given.push_back(input.joint);
             }
-            return array_from(Equations(scene).trim(t, q, given));
+            return scene.with_equations(
+                [&](Equations& equations) { return array_from(equations.trim(t, q, given)); });
           },
           py::arg("t"), py::arg("q"), py::arg("joints"))
       .def(

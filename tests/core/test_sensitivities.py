@@ -141,7 +141,7 @@ def test_a_pivot_is_pushed_from_rest_whenever_a_run_begins(begin: float) -> None
 
 @pytest.mark.parametrize("name", ["gravity", "pivot.x", "q0[1]", "torque[1]"])
 def test_a_name_that_stands_twice_is_refused(name: str) -> None:
-    """Of two parameters of the same name, the first had zeros."""
+    """The first of two equal names once had zeros."""
     with pytest.raises(ValueError, match="stands twice: leave one out"):
         pc.simulate(pc.Scene.textbook(), (0, 1), 0.5, sensitivities=[name, name])
 

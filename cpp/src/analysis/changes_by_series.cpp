@@ -188,9 +188,9 @@ ChangesBySeries::Convergence ChangesBySeries::look_at(Part& part, double toleran
   const auto size_of_state = static_cast<int>(part.ends.size()) / names_at_once;
   measure(part.rows.data(), size_of_state, order_, x_, &sizes, part.ends.data());
   Convergence found{.is_there = true, .wanted_order = lowest_order};
+  const std::span<const AlongNames> start(part.rows.data(),
+                                          static_cast<std::size_t>(size_of_state));
   for (int k = 0; k < part.count; ++k) {
-    const std::span<const AlongNames> start(part.rows.data(),
-                                            static_cast<std::size_t>(size_of_state));
     const auto is_number = [k](const AlongNames& x) { return std::isfinite(x.slope[k]); };
     if (!std::ranges::all_of(start, is_number)) continue;
     const double size = sizes.of_change[k];

@@ -1,4 +1,4 @@
-"""What is made of a state - places, velocities, energies - and how it changes with state and names.
+"""Outputs of a state: places, velocities, energies, and how they change with state and names.
 
 Arrays have the axes of times in front, written ``(...)``.
 """

@@ -48,16 +48,12 @@ PENDCORE_INLINE void ChainOf<Number>::prepare(const Number* q, const Number* qd)
   Number* const c = in(c_);
   copy_links(q, n_, in(q_));
   copy_links(qd, n_, in(qd_));
-  for (int first = 0; first < padded_; first += 4) {
-    sines_cosines<Row>(in(q_) + first, s + first, c + first);
-    for (int i = first; i < first + 4; i += width) {
-      const Row rate = load<Row>(in(qd_) + i);
-      const Row square = rate * rate;
-      store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
-      store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
-    }
-  }
+  for (int i = 0; i < padded_; i += 4) sines_cosines<Row>(in(q_) + i, s + i, c + i);
   for (int i = 0; i < padded_; i += width) {
+    const Row rate = load<Row>(in(qd_) + i);
+    const Row square = rate * rate;
+    store(in(centripetal_) + i, Row(load<Row>(in(length_) + i) * square));
+    store(in(center_) + i, Row(load<Row>(in(mass_moment_) + i) * square));
     const Row sine = load<Row>(s + i);
     const Row cosine = load<Row>(c + i);
     const Row sine_before = before(sine, load<Row>(s + i - width));
