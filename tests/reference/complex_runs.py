@@ -20,6 +20,8 @@ from reference.rig import Rig
 LITTLE = 1e-30j
 NEAR = 1e-14
 """No smaller gap between a joint and its stop is told from none, rad."""
+ROUNDING = 2e-15
+"""By as much may a guard be below zero where a joint has just begun to move from it."""
 
 
 def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
@@ -97,7 +99,7 @@ class HybridRun:
             roots = [
                 (self.root(g, t, y, h), name, j, g)
                 for name, j, g in self.guards()
-                if g(t + h, there).real < 0
+                if g(t + h, there).real < -ROUNDING
             ]
             if not roots:
                 t, y, most = t + h, there, 4 * most
