@@ -72,38 +72,16 @@ def write(folder: Path) -> None:
     if listed != public_names():
         raise ValueError(f"GROUPS and pendcore.__all__ differ in {listed ^ public_names()}")
     sections = [
-        *((title, "pendcore", pendcore, names) for title, names in GROUPS.items()),
-        ("Effects", "pendcore.effects", effects, list(effects.__all__)),
-        ("Events", "pendcore.events", events, list(events.__all__)),
-        ("What ensembles keep", "pendcore.reducers", reducers, list(reducers.__all__)),
-        ("Random starts", "pendcore.sampling", sampling, list(sampling.__all__)),
-        *(
-            (title, module.__name__, module, callables(module))
-            for title, module in EXTENDED_BY.items()
-        ),
+        *((title, "pendcore", names) for title, names in GROUPS.items()),
+        ("Effects", "pendcore.effects", effects.__all__),
+        ("Events", "pendcore.events", events.__all__),
+        ("What ensembles keep", "pendcore.reducers", reducers.__all__),
+        ("Random starts", "pendcore.sampling", sampling.__all__),
+        *((title, module.__name__, callables(module)) for title, module in EXTENDED_BY.items()),
     ]
-    index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
-    hidden = []
-    for title, module, home, names in sections:
-        hidden += ["", ".. toctree::", "   :hidden:", f"   :caption: {title}", ""]
-        index += [title, "-" * len(title), "", ".. list-table::", "   :widths: 30 70", ""]
-        for name in names:
-            page = f"{module}.{name}"
-            (folder / f"{page}.rst").write_text(page_of(page, getattr(home, name)))
-            index += [f"   * - :doc:`{name} <{page}>`", f"     - {first_line(getattr(home, name))}"]
-            hidden.append(f"   {name} <{page}>")
-        index.append("")
-    (folder / "index.rst").write_text("\n".join(index + hidden) + "\n")
-
-
-def first_line(thing: Any) -> str:
-    return (inspect.getdoc(thing) or "").partition("\n")[0].replace("*", "\\*").replace("`", "")
-
-
-def page_of(path: str, thing: Any) -> str:
-    name = path.rpartition(".")[2]
-    directive = "autoclass" if inspect.isclass(thing) else "autofunction"
-    lines = [name, "=" * len(name), "", f".. {directive}:: {path}"]
-    if inspect.isclass(thing) and not issubclass(thing, BaseException):
-        lines += ["   :members:", "   :inherited-members: list, tuple, object, int, Mapping"]
-    return "\n".join(lines) + "\n"
+    lines = ["Python", "======", "", "Everything public, from the docstrings.", ""]
+    options = ["   :toctree: .", "   :template: page", "   :nosignatures:"]
+    for title, module, names in sections:
+        lines += [title, "-" * len(title), "", ".. autosummary::", *options]
+        lines += [f"   :caption: {title}", "", *(f"   ~{module}.{name}" for name in names), ""]
+    (folder / "index.rst").write_text("\n".join(lines))
