@@ -64,6 +64,7 @@ intersphinx_mapping = inventories.write(ROOT / "inventories")
 
 html_theme = "pydata_sphinx_theme"
 html_title = "pendcore"
+templates_path = [str(HERE / "_templates")]
 html_static_path = ["_static"]
 html_css_files = ["house.css", "site.css"]
 html_js_files = ["site.js"]

@@ -78,10 +78,8 @@ def _convert(film: Path, *options: str) -> None:
 def _film_of_effect(told: Any, path: Path) -> None:
     """Film the textbook's rods with an effect."""
     names: dict[str, Any] = {**vars(pc.effects), "inf": math.inf}
-    *before, call = told.examples.splitlines()[
-        : told.examples.splitlines().index(told.calls[0]) + 1
-    ]
-    exec("\n".join(before), names)
+    before, call, _ = told.examples.partition(told.calls[0])
+    exec(before, names)
     free = pc.Scene.textbook()
     scene = free.replace(effects=[eval(call, names)])
     sol, without = (

@@ -41,8 +41,11 @@ GROUPS = {
     "Angles": ["angles_from_vertical", "angles_to_vertical"],
 }  # fmt: skip
 
-
-EXTENDED_BY = {
+MODULES = {
+    "Effects": effects,
+    "Events": events,
+    "What ensembles keep": reducers,
+    "Random starts": sampling,
     "Methods": methods,
     "Options of a run": options,
     "Figures": plotting,
@@ -50,60 +53,28 @@ EXTENDED_BY = {
     "For extras: case files": case_files,
     "This build": build,
 }
-"""Modules for those who build on pendcore."""
+"""The last are for those who build on pendcore."""
 
 
 def callables(module: Any) -> list[str]:
-    """Return the functions and classes of a module that `pendcore` itself does not offer."""
-    own = {name: getattr(module, name) for name in module.__all__ if name not in pendcore.__all__}
+    """Return the functions and classes that a module offers."""
+    own = {name: getattr(module, name) for name in module.__all__}
     return [name for name, x in own.items() if inspect.isclass(x) or inspect.isroutine(x)]
-
-
-def public_names() -> set[str]:
-    """Return what `pendcore` offers, without its modules."""
-    modules = {"effects", "events", "reducers", "sampling"}
-    return {*pendcore.__all__} - modules - {"__version__"}
 
 
 def write(folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     listed = {name for names in GROUPS.values() for name in names}
-    if listed != public_names():
-        raise ValueError(f"GROUPS and pendcore.__all__ differ in {listed ^ public_names()}")
-    sections = [
-        *((title, "pendcore", pendcore, names) for title, names in GROUPS.items()),
-        ("Effects", "pendcore.effects", effects, list(effects.__all__)),
-        ("Events", "pendcore.events", events, list(events.__all__)),
-        ("What ensembles keep", "pendcore.reducers", reducers, list(reducers.__all__)),
-        ("Random starts", "pendcore.sampling", sampling, list(sampling.__all__)),
-        *(
-            (title, module.__name__, module, callables(module))
-            for title, module in EXTENDED_BY.items()
-        ),
-    ]
-    index = ["Python", "======", "", "Everything public, from the docstrings.", ""]
-    hidden = []
-    for title, module, home, names in sections:
-        hidden += ["", ".. toctree::", "   :hidden:", f"   :caption: {title}", ""]
-        index += [title, "-" * len(title), "", ".. list-table::", "   :widths: 30 70", ""]
-        for name in names:
-            page = f"{module}.{name}"
-            (folder / f"{page}.rst").write_text(page_of(page, getattr(home, name)))
-            index += [f"   * - :doc:`{name} <{page}>`", f"     - {first_line(getattr(home, name))}"]
-            hidden.append(f"   {name} <{page}>")
-        index.append("")
-    (folder / "index.rst").write_text("\n".join(index + hidden) + "\n")
-
-
-def first_line(thing: Any) -> str:
-    return (inspect.getdoc(thing) or "").partition("\n")[0].replace("*", "\\*").replace("`", "")
-
-
-def page_of(path: str, thing: Any) -> str:
-    name = path.rpartition(".")[2]
-    directive = "autoclass" if inspect.isclass(thing) else "autofunction"
-    lines = [name, "=" * len(name), "", f".. {directive}:: {path}"]
-    if inspect.isclass(thing) and not issubclass(thing, BaseException):
-        lines += ["   :members:", "   :inherited-members: list, tuple, object, int, Mapping"]
-    return "\n".join(lines) + "\n"
+    if differing := listed ^ {*callables(pendcore)}:
+        raise ValueError(f"GROUPS and pendcore.__all__ differ in {differing}")
+    sections = [(title, "pendcore", names) for title, names in GROUPS.items()]
+    for title, module in MODULES.items():
+        own = [name for name in callables(module) if name not in listed]
+        sections.append((title, module.__name__, own))
+    lines = ["Python", "======", "", "Everything public, from the docstrings.", ""]
+    options = ["   :toctree: .", "   :template: page", "   :nosignatures:"]
+    for title, module, names in sections:
+        lines += [title, "-" * len(title), "", ".. autosummary::", *options]
+        lines += [f"   :caption: {title}", "", *(f"   ~{module}.{name}" for name in names), ""]
+    (folder / "index.rst").write_text("\n".join(lines))

@@ -1,8 +1,8 @@
 """A Sphinx extension for pages that are written to be read in the repository, too.
 
-A link to an example leads to its page. A link to another file that is no page (a test, a header, a
-case) becomes a download. A link to a folder, or to a Markdown file outside docs/, becomes plain
-text. A README lists the pages of its folder for the site's navigation, in its order.
+A link to an example leads to its page. A link to a folder, or to a Markdown file outside docs/,
+becomes plain text. A README lists the pages of its folder for the site's navigation, in its order.
+MyST makes a download of a link to another file that is no page (a test, a header, a case).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-LINK = re.compile(r"\[([^\]]*)\]\(((?!https?://|mailto:|#)[^)#\s]+)(#[^)\s]*)?\)")
+LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?!https?://|mailto:|#)[^)#\s]+)(#[^)\s]*)?\)")
 
 
 def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
@@ -23,18 +23,14 @@ def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
     def replaced(match: re.Match[str]) -> str:
         words, target, _ = match.groups()
-        if match.string[: match.start()].endswith("!"):
-            return match.group()
         path = (folder / target).resolve()
-        inside = path.is_relative_to(Path(app.srcdir).resolve())
-        if (inside and path.suffix in {".md", ".rst"}) or not path.exists():
-            return match.group()
-        if path.is_dir() or path.suffix == ".md":
-            return words
-        if (Path(app.srcdir) / "examples" / f"{path.stem}.md").exists() and path.suffix == ".py":
-            return f"[{words}](/examples/{path.stem}.md)"
-        label = words.replace("`", "")
-        return "{download}`" + f"{label} <{target}>`"
+        is_page = path.suffix in {".md", ".rst"} and path.is_relative_to(Path(app.srcdir).resolve())
+        if path.exists() and not is_page:
+            if path.is_dir() or path.suffix == ".md":
+                return words
+            if (Path(app.srcdir) / f"examples/{path.stem}.md").exists() and path.suffix == ".py":
+                return f"[{words}](/examples/{path.stem}.md)"
+        return match.group()
 
     source[0] = LINK.sub(replaced, source[0])
     if page.endswith("/README"):

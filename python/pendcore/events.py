@@ -157,7 +157,7 @@ class RateZero(Event):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class TipLine(Event):
-    """The tip crosses a straight line: ``normal . (tip - point)`` is zero.
+    """The tip crosses a straight line: ``normal @ (tip - point)`` is zero.
 
     Parameters
     ----------

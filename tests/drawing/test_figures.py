@@ -156,7 +156,7 @@ def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
 
 def test_a_strip_fills_the_width_of_its_figure(sol):
     for t in (None, [0.0, 1.5, 4.0]):
-        axis = plot(sol, "strip", None, None, {"t": t}, {}, new_figure=Figure)[0].axes
+        axis = plot(sol, "strip", None, {"t": t}, {}, new_figure=Figure)[0].axes
         axis.figure.draw_without_rendering()
         assert axis.get_tightbbox().width > 0.9 * axis.figure.bbox.width
 

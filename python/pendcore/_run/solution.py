@@ -941,8 +941,8 @@ class Solution:
         """
         from pendcore.plotting.plot import plot
 
-        own = {"t": t, "event": event, "link": link, "label": label}
-        return plot(self, what, ax, horizon, own, line_properties)
+        own = {"t": t, "event": event, "link": link, "label": label, "horizon": horizon}
+        return plot(self, what, ax, own, line_properties)
 
     def animate(
         self,

@@ -29,6 +29,11 @@ class Played {
     const rounding = 1e-9 * Math.abs(this.end - this.begin);
     return this.until === null || this.direction * (t - this.until) <= rounding;
   }
+  /** Angles and rates at a time, from the states that each kind of run has at many. */
+  state(t) {
+    const [row] = /** @type {any} */ (this).states([t]);
+    return row.subarray(0, 2 * this.n);
+  }
 }
 
 /** The sizes of the forces at the joints of a run, N. */
@@ -59,10 +64,6 @@ export class LiveRun extends Played {
   }
   within(t) {
     return clamp(t, Math.min(this.begin, this.end), Math.max(this.begin, this.end));
-  }
-  /** Angles and rates at a time. */
-  state(t) {
-    return this.states([t])[0].subarray(0, 2 * this.n);
   }
   /** Angles, rates and the entries of the ledger at times, a row each. */
   states(times) {
@@ -103,9 +104,6 @@ export class Recording extends Played {
   }
   within(t) {
     return this.steps[this.#nearest(t)];
-  }
-  state(t) {
-    return this.states([t])[0].subarray(0, 2 * this.n);
   }
   states(times) {
     return times.map((t) => Float64Array.from(this.recorded.states[this.#nearest(t)]));

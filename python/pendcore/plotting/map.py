@@ -141,12 +141,10 @@ def draw_map(
     from matplotlib.patches import Patch
 
     theme = theme_of(axis)
-    values = np.ma.masked_invalid(shown.values)
-    if shown.is_log:
-        values = np.ma.masked_where(~(values > 0), values)
-        properties = {"norm": "log"} | properties
     mesh: dict[str, Any] = {"shading": "nearest", "rasterized": True, "cmap": "viridis"}
-    image = axis.pcolormesh(x.values, y.values, values.T, **(mesh | properties))
+    scale = {"norm": "log"} if shown.is_log else {}
+    values = np.ma.masked_where(shown.is_log & ~(shown.values > 0), shown.values)
+    image = axis.pcolormesh(x.values, y.values, values.T, **(mesh | scale | properties))
     axis.set(xlabel=x.label, ylabel=y.label)
     axis.figure.colorbar(image, ax=axis, label=shown.label)
     grounds = zip(shown.blanks.items(), (theme.ground, theme.line, theme.quiet), strict=False)
@@ -156,7 +154,7 @@ def draw_map(
     drawn, patches = [image], []
     for name, mask, color in marks:
         if mask.any():
-            pixels = np.ma.masked_where(~mask, np.ones(mask.shape))
+            pixels = np.where(mask, 1.0, np.nan)
             how = mesh | {"cmap": ListedColormap([color])}
             drawn.append(axis.pcolormesh(x.values, y.values, pixels.T, **how))
             share = f"{name}: {mask.mean():.2%}"

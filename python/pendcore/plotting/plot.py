@@ -44,7 +44,6 @@ def plot(
     solution: Solution,
     what: str,
     ax: Any,
-    horizon: float | None,
     own: dict[str, Any],
     line_properties: dict[str, Any],
     *,
@@ -53,8 +52,8 @@ def plot(
 ) -> list[Artist]:
     """Draw a figure of a run; see `pendcore.Solution.plot`.
 
-    ``own`` has what only some kinds of figures take; None is what was not given. Without a horizon,
-    what is past ``valid_until``, s, is shaded, if that is known.
+    ``own`` has what only some kinds of figures take; None is what was not given. Without a horizon
+    in it, what is past ``valid_until``, s, is shaded, if that is known.
     """
     from matplotlib.lines import Line2D
 
@@ -62,7 +61,7 @@ def plot(
     if what not in KINDS:
         raise ValueError(f"what = {what!r}: {did_you_mean(what, KINDS)}")
     draw, takes = _FIGURES[what]
-    own = {name: x for name, x in (own | {"horizon": horizon}).items() if x is not None}
+    own = {name: x for name, x in own.items() if x is not None}
     for name in own:
         if name not in takes:
             having = [repr(kind) for kind, (_, others) in _FIGURES.items() if name in others]
@@ -72,8 +71,8 @@ def plot(
     given = whole_names(Solution.plot, Line2D, line_properties)
     if given and what == "free_bodies":
         raise TypeError(f"{next(iter(given))}: what = {what!r} has no lines: only arrows and rods")
-    if horizon is not None:
-        valid_until = solution.valid_until(positive("horizon", horizon, "rad"))
+    if "horizon" in own:
+        valid_until = solution.valid_until(positive("horizon", own["horizon"], "rad"))
     own |= {"ax": ax, "new_figure": new_figure, "properties": given}
     return draw(Request(solution=solution, valid_until=valid_until, **own))
 
@@ -94,9 +93,8 @@ def save_figure(
     """
     from matplotlib.figure import Figure
 
-    first, *_ = plot(
-        solution, what, None, horizon, {"t": t}, {}, new_figure=Figure, valid_until=valid_until
-    )
+    own = {"t": t, "horizon": horizon}
+    first, *_ = plot(solution, what, None, own, {}, new_figure=Figure, valid_until=valid_until)
     figure: Any = first.get_figure(root=True)
     drawn = BytesIO()  # matplotlib's PDF breaks off with an error of its own if the disk is full
     kind = Path(path).suffix.removeprefix(".")
