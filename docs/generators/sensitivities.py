@@ -52,7 +52,7 @@ def of_heyoka(names: list[str]) -> Callable[[float], Way]:
         by = variables + parameters[: len(names) - 4]
         system = hy.var_ode_sys(equations, by, order=1) if names else equations
         values = [9.807, 1.0, 1.0, INERTIA, INERTIA, 1.0]
-        run = hy.taylor_adaptive(system, [*Q0, *QD0], pars=values, tol=tolerance)
+        run = hy.taylor_adaptive(system, [*Q0, *QD0], pars=values, tol=tolerance, fast_math=True)
         start = run.state.copy()
 
         def derivatives(_: float) -> np.ndarray:

@@ -283,6 +283,41 @@ REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, list[str], str]] = {
         pc.Scene(links=[ROD]).replace(effects=[E.DryJointFriction(joint=1, coulomb=9.807 / 2)]),
         1.0, 0.0, 0.0, ["q0[1]"], "the torques on joint 1 only just hold it",
     ),
+    "an impact when a load jumps": (
+        WEIGHTLESS.replace(effects=[
+            E.JointStop(joint=1, range=(-9, 1.0), restitution=0.5),
+            E.Motor(joint=1, table=E.Table(t=(-1, 0.5, 2), torque=(0.0, 0.1, 0.1), hold=True)),
+        ]), 1.0, 0.0, 2.0, ["q0[1]", "torque[1]"], "two of its laws change at that time",
+    ),
+    "a joint that comes to rest when a load jumps": (
+        WEIGHTLESS.replace(effects=[
+            E.DryJointFriction(joint=1, coulomb=4 / 3),
+            E.Motor(joint=1, table=E.Table(t=(-1, 0.5, 2), torque=(0.0, 2.0, 2.0), hold=True)),
+        ]), 1.0, 0.0, 2.0, ["qd0[1]"], "two of its laws change at that time",
+    ),
+    "a load that jumps to what friction just holds": (
+        WEIGHTLESS.replace(effects=[
+            E.DryJointFriction(joint=1, coulomb=1.0),
+            E.Motor(joint=1, table=E.Table(t=(0, 0.5, 2), torque=(0.0, 1.0, 1.0), hold=True)),
+        ]), 1.0, 0.0, 0.0, ["torque[1]"], "the torques on joint 1 only just hold it",
+    ),
+    "a load that falls to what a stop just holds": (
+        WEIGHTLESS.replace(effects=[
+            E.JointStop(joint=1, range=(-9, 1.0)),
+            E.Motor(joint=1, table=E.Table(t=(0, 0.7, 2), torque=(1.0, 0.0, 0.0))),
+        ]), 1.0, 0.0, 2.0, ["torque[1]"], "the torques on joint 1 only just hold it",
+    ),
+    "a graze that the run's own error passes by": (
+        pc.Scene(links=[ROD]).replace(
+            effects=[E.JointStop(joint=1, range=(-9, np.pi - 0.3), restitution=0.5)]
+        ), 2.0, 0.3, 0.0, ["q0[1]"], "joint 1 grazes its stop",
+    ),
+    "a motor that slows a sliding joint nearly to rest": (
+        WEIGHTLESS.replace(effects=[
+            E.DryJointFriction(joint=1, coulomb=1.0),
+            E.Motor(joint=1, table=E.Table(t=(0, 2), torque=(0.0, 2.0))),
+        ]), 2.0, 0.0, 1.5 + 1e-9, ["qd0[1]"], "joint 1 nearly comes to rest",
+    ),
     "a restitution that is zero": (
         pc.Scene(links=[ROD]).replace(effects=[E.JointStop(joint=1, range=(-9, 0.8))]), 1.0, 0.2,
         3.0, ["effect[1].restitution"], "the restitution of joint 1 is 0, and can only grow",

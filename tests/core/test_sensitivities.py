@@ -360,9 +360,12 @@ REFUSED = {
         E.Lock(joint=2, angle=0.2), ["effect[1].angle"], r"a run starts at the angle of effect 1",
     ),
     "a law without sides": (
-        E.ViscousJoint(joint=1, damping=0.1), ["effect[1].damping2"], "is 0.0, and the run does",
+        E.ViscousJoint(joint=1, damping=0.1), ["effect[1].damping2"],
+        "is 0.0, where its law has one piece; .*leave this name out",
     ),
     "no parameter": (E.Payload(mass=1.0), ["lnk[1].mass"], r'did you mean "link\[1\]\.mass"'),
+    "no torque": (E.Payload(mass=1.0), ["torqe[1]"], r'did you mean "torque\[1\]"'),
+    "no start": (E.Payload(mass=1.0), ["qdo[1]"], r'did you mean "qd0\[1\]"'),
 }  # fmt: skip
 
 

@@ -28,8 +28,9 @@ std::vector<NamedNumber> parameters(const Scene& scene);
 class ParameterChoice {
  public:
   /// Throws std::invalid_argument for a name that the scene does not have, and says what may be
-  /// meant.
-  ParameterChoice(const Scene& scene, const std::vector<std::string>& names);
+  /// meant: a parameter, or one of `others`, names that are known besides.
+  ParameterChoice(const Scene& scene, const std::vector<std::string>& names,
+                  const std::vector<std::string>& others = {});
 
   std::size_t size() const { return places_.size(); }
   const std::vector<std::string>& names() const { return names_; }
@@ -46,5 +47,8 @@ class ParameterChoice {
   std::vector<double> values_;
   std::vector<std::size_t> places_;  ///< in the order of parameters()
 };
+
+/// The names of inputs: "torque[j]" of each joint, "pivot.x" and "pivot.y".
+std::vector<std::string> input_names(const Scene& scene);
 
 }  // namespace pendcore

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "arithmetic/extrapolated_slope.hpp"
 #include "dynamics/contact/impact_laws.hpp"
 #include "dynamics/kinematics.hpp"
+#include "effects/behaviour.hpp"
+#include "integrate/events/root.hpp"
 #include "pendcore/parameters.hpp"
 
 namespace pendcore {
@@ -14,7 +17,7 @@ namespace {
 
 /// A change by as little as this would miss an event: of an angle in rad, and of other things as a
 /// share of their size.
-constexpr double near_miss = 1e-7;
+constexpr double little = 1e-7;
 
 using Kind = JointGuard::Kind;
 
@@ -25,14 +28,20 @@ Vector relative_rows(const Matrix& changes, Eigen::Index first, int joint) {
   return row;
 }
 
-/// The torque that holds a joint in a scene, with the modes and the holds of a run.
-double holding_torque(const Scene& scene, const EquationsOfMotion& run, double t, const Vector& y,
-                      int joint) {
-  const EquationsOfMotion here = equations_of_motion(scene);
+/// The equations of a scene, with the modes and the holds of a run.
+EquationsOfMotion equations_in_force(const Scene& scene, const EquationsOfMotion& run) {
+  EquationsOfMotion here = equations_of_motion(scene);
   for (std::size_t i = 0; i < run.effects->modes.size(); ++i) {
     here.effects->put_mode(i, run.effects->modes[i]);
   }
   here.held_joints->restore(*here.effects, run.held_joints->saved_state(), false);
+  return here;
+}
+
+/// The torque that holds a joint in a scene, with the modes and the holds of a run.
+double holding_torque(const Scene& scene, const EquationsOfMotion& run, double t, const Vector& y,
+                      int joint) {
+  const EquationsOfMotion here = equations_in_force(scene, run);
   const std::size_t n = scene.links.size();
   std::vector<double> torques(n);
   here.held_joints->torques(here, t, y.data(), y.data() + n, torques.data());
@@ -108,7 +117,7 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
     last_jumped_ = false;
     was_given_ = true;
     take_laws(change, changes);
-    return is_continuous ? "" : border(change);
+    return border(change);
   }
   const JointGuard guard = *change.guard;
   // What holds a joint takes a jump of the load, and may let it go at that given time.
@@ -120,7 +129,7 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
     take_laws(change, changes);
     return {};
   }
-  if (is_again) return "two of its laws change at that time";
+  if (is_again || meets_a_jump_of_load(change)) return "two of its laws change at that time";
   last_ = change.t;
   last_jumped_ = change.jumped;
   was_given_ = false;
@@ -145,8 +154,68 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   return border(change);
 }
 
+Saltation::NearMiss Saltation::near_miss(const WatchedStep& step) {
+  const double natural = equations_.equations().held_joints->natural_speed();
+  polynomial_.resize(step.degree + 1);
+  NearMiss first;
+  std::vector<TurningPoint> turning_points;
+  for (const JointGuard& guard : guards_) {
+    guard.polynomial(step.rows, step.degree, static_cast<int>(step.y.size()), n_,
+                     polynomial_.data());
+    const double near = guard.is_on_rate() ? little * natural : little;
+    double least = polynomial_[0];  // a lower bound
+    for (int k = 1; k <= step.degree; ++k) least -= std::abs(polynomial_[k]);
+    if (least > near) continue;
+    turning_points.clear();
+    find_turning_points(polynomial_.data(), step.degree, turning_points);
+    bool was_away = polynomial_[0] > near;  // not at its zero since the last change
+    for (const auto& [theta, value] : turning_points) {
+      if (theta >= std::min(step.share, first.share)) break;
+      if (was_away && value <= near) {
+        first = {theta, joint_name(guard.joint) +
+                            (guard.is_on_rate() ? " nearly comes to rest" : " grazes its stop")};
+      }
+      was_away |= value > near;
+    }
+  }
+  return first;
+}
+
+/// Whether the load jumps at a given time so near to this one that a slightly different motion
+/// would meet both in the other order.
+bool Saltation::meets_a_jump_of_load(const WatchedChange& change) const {
+  const Scene& scene = equations_.scene();
+  const double* const q = change.before.data();
+  const double natural = equations_.equations().held_joints->natural_speed();
+  const double moment = (change.forward ? little : -little) / natural;
+  for (std::size_t i = 0; i < scene.effects.size(); ++i) {
+    const EffectBehaviour& effect = *scene.effects[i];
+    if (!effect.has_modes()) continue;
+    const double t = effect.next_time(change.t - moment, change.forward);
+    if (!(std::abs(t - change.t) <= std::abs(moment))) continue;
+    for (const EquationsOfMotion* run : {&equations_.equations(), &change.equations}) {
+      const EquationsOfMotion here = equations_in_force(scene, *run);
+      const auto accelerations = [&](bool forward) {
+        here.effects->put_mode(i, mode_at(effect, t, q, q + n_, forward));
+        Vector qdd(n_);
+        accelerations_in_force(here, t, q, q + n_, qdd.data());
+        return qdd;
+      };
+      const Vector after = accelerations(change.forward);
+      const double jump = largest(after - accelerations(!change.forward));
+      if (jump > rounding_of_rates * std::max(largest(after), natural * natural)) return true;
+    }
+  }
+  return false;
+}
+
 void Saltation::take_laws(const WatchedChange& change, Matrix& changes) {
   equations_.take_laws(change.t, change.equations, change.forward);
+  guards_ = joint_guards(equations_.equations(), {.release_direction = std::vector<int>(n_)},
+                         change.after.data());
+  std::erase_if(guards_, [](const JointGuard& guard) {
+    return guard.kind != Kind::friction && guard.stop() == Side::none;
+  });
   const std::vector<bool>& corners = equations_.mechanism_along().corners();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!corners[i]) continue;
@@ -191,11 +260,11 @@ std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& chan
   Crossing found{
       .by_name = on_phi * relative_rows(changes, 0, j) + on_phid * relative_rows(changes, n_, j),
       .slope = on_phi * rate + on_phid * acceleration,
-      .grazes = std::abs(acceleration) <= near_miss * largest(f.tail(n_))};
+      .grazes = std::abs(acceleration) <= little * largest(f.tail(n_))};
   if (guard.stop() == Side::none) return found;
   // Without its stop, the joint would turn back after this angle.
   const double beyond = 0.5 * rate * rate / (on_phi * acceleration);
-  found.grazes = rate == 0.0 || (beyond > 0.0 && beyond < near_miss);
+  found.grazes = rate == 0.0 || (beyond > 0.0 && beyond < little);
   for (const auto& one : equations_.parameters()) {
     found.by_name[one.column] -= on_phi * one.supports[j].stop(guard.stop()).angle;
   }
@@ -228,7 +297,7 @@ std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedCh
       here, [&](double h) { return torque(change.t + h, y + h * f); }, moment, size);
   if (!in_time) return std::nullopt;
   found.slope = sign * *in_time;
-  found.grazes = std::abs(found.slope) <= near_miss * size * speed;
+  found.grazes = std::abs(found.slope) <= little * size * speed;
   for (Eigen::Index column = 0; column < k_; ++column) {
     const Vector direction = changes.col(column);
     if (largest(direction) == 0.0 || !direction.allFinite()) continue;

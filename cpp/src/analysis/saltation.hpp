@@ -14,7 +14,8 @@
 /// sliding takes the torque that held. At a time that is given, dt* = 0.
 ///
 /// A motion has no such derivative where it grazes a stop, where two of these fall together, and
-/// where a joint is held or let go by rounding. There, this refuses in words.
+/// where a joint is held or let go by rounding. There, this refuses in words. So it does
+/// where a motion comes as near to that as 1e-7 rad, or as that share of other sizes.
 ///
 /// Sources: Aizerman, Gantmacher, Quarterly Journal of Mechanics and Applied Mathematics 11 (1958)
 /// 459; Kong, Payne, Zhu, Johnson, Proceedings of the IEEE 112 (2024) 585.
@@ -42,6 +43,13 @@ class Saltation {
   /// Takes the laws after a change, and brings the changes there. Returns why there are none, or
   /// nothing.
   std::string pass(const WatchedChange& change, Matrix& changes);
+  /// The first place along a step that a joint's rate or its distance from a stop nearly reaches
+  /// zero, and turns back: a slightly different motion would have another law there.
+  struct NearMiss {
+    double share = never;  ///< of the step; infinite if there is none
+    std::string what{};
+  };
+  NearMiss near_miss(const WatchedStep& step);
   /// Why some names alone have none any more since this was asked last, or nothing.
   std::string take_remark() { return std::exchange(remark_, {}); }
 
@@ -59,12 +67,15 @@ class Saltation {
   void take_laws(const WatchedChange& change, Matrix& changes);
   bool follows_the_last(const WatchedChange& change) const;
   std::string border(const WatchedChange& change);
+  bool meets_a_jump_of_load(const WatchedChange& change) const;
   void settle(Matrix& changes) const;
 
   VariationalEquations& equations_;
   int n_;
   Eigen::Index k_;
   ImpactOnChanges impact_;
+  std::vector<JointGuard> guards_;  ///< of stops and friction, by the laws in force
+  std::vector<double> polynomial_;  ///< of one of them, along a step
   std::string remark_;
   double last_ = never;       ///< s, when the laws last changed with a jump of rates or state
   bool was_given_ = false;    ///< at a time that no state moves

@@ -204,10 +204,14 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   cuts_left = most_cuts_of_step;
   const bool by_series =
       !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
+  const Saltation::NearMiss miss =
+      saltation && !is_over ? saltation->near_miss(step) : Saltation::NearMiss{};
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
   const auto advance_to = [&](double from, double to) {
     if (is_over) return;
-    if (by_series) {
+    if (to > miss.share) {
+      refuse_from(t_start + miss.share * step.h, miss.what);
+    } else if (by_series) {
       series.evaluate(to, now);
     } else {
       advance(step, from, to, 0);

@@ -64,8 +64,13 @@ ParameterChoice choice_of(const Scene& scene, std::vector<std::string> names) {
     throw std::invalid_argument("sensitivities: \"" + name +
                                 "\": a start is named q0[i] or qd0[i]");
   }
+  std::vector<std::string> others = input_names(scene);
+  for (int i = 1; i <= n; ++i) {
+    for (const char* const start : {"q0[", "qd0["})
+      others.push_back(start + std::to_string(i) + "]");
+  }
   try {
-    return {scene, names};
+    return {scene, names, others};
   } catch (const std::invalid_argument& unknown) {
     throw std::invalid_argument(std::string("sensitivities: ") + unknown.what() +
                                 "; others are q0[i], qd0[i], torque[j], pivot.x and pivot.y");
@@ -113,8 +118,9 @@ void require_smooth(const Scene& scene, const ParameterChoice& choice, std::size
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (other.effects[i]->has_modes() == scene.effects[i]->has_modes()) continue;
     throw std::invalid_argument("sensitivities: \"" + name + "\": is " + text(value) +
-                                ", and the run does not look for the sides of the law that it "
-                                "would have with a little more: give another value");
+                                ", where its law has one piece; beside that, it has several, and "
+                                "the run does not look for where they meet: leave this name out, "
+                                "or give the parameter another value");
   }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     if (!scene.effects[i].is<Lock>() || name != "effect[" + std::to_string(i + 1) + "].angle") {

@@ -171,7 +171,7 @@ Matrix responses_to(const std::vector<Input>& inputs, const Scene& scene, const 
 
 ParameterChoice choice_of(const Scene& scene, const std::vector<std::string>& names) {
   try {
-    return {scene, names};
+    return {scene, names, input_names(scene)};
   } catch (const std::invalid_argument& unknown) {
     throw std::invalid_argument(std::string("inputs: ") + unknown.what() +
                                 "; others are torque[j], pivot.x and pivot.y");

@@ -71,8 +71,12 @@ std::string wrong_number(const Scene& scene, const std::string& name) {
 
 /// What to do about a name that the scene does not have.
 std::string remedy(const Scene& scene, const std::vector<NamedNumber>& known,
-                   const std::string& name) {
-  if (name.starts_with("q0") || name.starts_with("qd0")) {
+                   const std::string& name, const std::vector<std::string>& others) {
+  if (!others.empty() && !name.starts_with("link") && !name.starts_with("effect")) {
+    const auto far = [&](const std::string& one) { return distance(one, name); };
+    const std::string& nearest = *std::ranges::min_element(others, {}, far);
+    if (far(nearest) <= nearest.size() / 2) return "did you mean \"" + nearest + "\"?";
+  } else if (name.starts_with("q0") || name.starts_with("qd0")) {
     return "starts are not parameters: give them as q0 and qd0";
   }
   if (const std::string wrong = wrong_number(scene, name); !wrong.empty()) return wrong;
@@ -115,14 +119,23 @@ std::vector<NamedNumber> parameters(const Scene& scene) {
   return result;
 }
 
-ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::string>& names)
+std::vector<std::string> input_names(const Scene& scene) {
+  std::vector<std::string> names{"pivot.x", "pivot.y"};
+  for (std::size_t j = 1; j <= scene.links.size(); ++j) {
+    names.push_back("torque[" + std::to_string(j) + "]");
+  }
+  return names;
+}
+
+ParameterChoice::ParameterChoice(const Scene& scene, const std::vector<std::string>& names,
+                                 const std::vector<std::string>& others)
     : names_(names) {
   const std::vector<NamedNumber> known = parameters(scene);
   for (const std::string& name : names) {
     const auto found = std::ranges::find(known, name, &NamedNumber::name);
     if (found == known.end()) {
       throw std::invalid_argument("parameter \"" + name + "\": the scene has none of that name: " +
-                                  remedy(scene, known, name));
+                                  remedy(scene, known, name, others));
     }
     places_.push_back(static_cast<std::size_t>(found - known.begin()));
     values_.push_back(found->value);

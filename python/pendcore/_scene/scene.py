@@ -357,8 +357,10 @@ class Scene:
 
         n = len(self.links)
         driven, names = linearization.known_inputs(inputs)
-        if torques is not None and any(isinstance(one, str) for one in driven):
-            raise ValueError(f"torques: are of joints, and the inputs are {', '.join(names)}")
+        if torques is not None:
+            if any(isinstance(one, str) for one in driven):
+                raise ValueError(f"torques: are of joints, and the inputs are {', '.join(names)}")
+            torques = finite_array("torques", torques, "N m")
         found = self._compiled.linearize(t, q, qd, driven, torques)
         if found is None:  # a state of plain numbers costs three microseconds, as in a loop
             (t,) = vector("t", t, 1, "s")
