@@ -219,6 +219,12 @@ def test_a_corner_of_one_name_leaves_the_others() -> None:
 # Where they are kept ----------------------------------------------------------------------------
 
 
+def test_a_rod_that_returns_at_rest_to_its_stop_whatever_changes_has_derivatives() -> None:
+    """A plastic impact leaves it at rest; from there it comes back to that angle, and no farther."""
+    verdict = judged(258)
+    assert verdict.kind == "right", verdict
+
+
 def test_before_and_after_a_jump_both_are_kept() -> None:
     stop = E.JointStop(joint=1, range=(-9, 0.8), restitution=0.6)
     scene = WEIGHTLESS.replace(effects=[stop])

@@ -25,10 +25,19 @@ constexpr int usual_order = 20;
 using SeriesOfChain = ChainSeries<AlongNames, EffectsWithSlopes<AlongNames>>;
 using AnySeries = std::variant<DoublePendulumAlongNames, SeriesOfChain>;
 
-template <class Series>
-PENDCORE_INLINE void expand_series(const Series* series, double t, const AlongNames* y,
-                                   double sigma, int order, AlongNames* rows) {
-  series->expand(t, y, sigma, order, rows);
+PENDCORE_INLINE void expand_series(const SeriesOfChain* series, const ChangesInCommon* /*common*/,
+                                   double t, double sigma, int order, AlongNames* rows) {
+  series->expand(t, rows, sigma, order, rows);
+}
+PENDCORE_INLINE void expand_pendulum(const DoublePendulumAlongNames* series,
+                                     const ChangesInCommon* common, double t, double sigma,
+                                     int order, AlongNames* rows) {
+  series->expand(*common, t, sigma, order, rows);
+}
+PENDCORE_INLINE void find_common_series(const DoublePendulumAlongNames* series, double t,
+                                        const double* y, double sigma, int order,
+                                        ChangesInCommon* common) {
+  series->find_common(t, y, sigma, order, *common);
 }
 
 /// Computes the slopes of number i of a series at x.
@@ -94,13 +103,23 @@ struct ChangesBySeries::Part {
     rows.resize(static_cast<std::size_t>((order + 1) * size));
     ends.resize(static_cast<std::size_t>(size) * names_at_once);
   }
-  void expand(double t, double sigma, int order) {
-    std::visit(
-        [&]<class Series>(const Series& one) {
-          static const auto compute = fastest<&expand_series<Series>, wide_sets>();
-          compute(&one, t, rows.data(), sigma, order, rows.data());
-        },
-        series);
+  void expand(const ChangesInCommon& common, double t, double sigma, int order) {
+    static const auto of_chain = fastest<&expand_series, wide_sets>();
+    static const auto of_pendulum = fastest<&expand_pendulum, wide_sets>();
+    if (const auto* const chain = std::get_if<SeriesOfChain>(&series)) {
+      of_chain(chain, &common, t, sigma, order, rows.data());
+    } else {
+      of_pendulum(&std::get<DoublePendulumAlongNames>(series), &common, t, sigma, order,
+                  rows.data());
+    }
+  }
+
+  /// Finds what the changes of all names have in common, if they are those of two links.
+  void find_common(double t, const double* y, double sigma, int order,
+                   ChangesInCommon& common) const {
+    static const auto compute = fastest<&find_common_series, wide_sets>();
+    const auto* const pendulum = std::get_if<DoublePendulumAlongNames>(&series);
+    if (pendulum != nullptr) compute(pendulum, t, y, sigma, order, &common);
   }
 
  private:
@@ -117,7 +136,7 @@ struct ChangesBySeries::Part {
   }
 };
 
-ChangesBySeries::ChangesBySeries() = default;
+ChangesBySeries::ChangesBySeries() : common_(std::make_unique<ChangesInCommon>()) {}
 ChangesBySeries::~ChangesBySeries() = default;
 
 /// Makes the series of the laws that are in force; none where they have none.
@@ -158,6 +177,7 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
     set_order(order_ - 2, changes.rows());
   }
   wanted_order_ = lowest_order;
+  int in_common = 0;  // the order up to which that is known
   for (Part& part : parts_) {
     for (;;) {
       for (Eigen::Index i = 0; i < changes.rows(); ++i) {
@@ -166,7 +186,11 @@ bool ChangesBySeries::expand(const VariationalEquations& equations, double t, co
           set_lane(start.slope, k, changes(i, part.first + k));
         }
       }
-      part.expand(t, sigma, order_);
+      if (in_common != order_) {
+        part.find_common(t, y, sigma, order_, *common_);
+        in_common = order_;
+      }
+      part.expand(*common_, t, sigma, order_);
       const auto [has_converged, wanted] = look_at(part, tolerance);
       wanted_order_ = std::max(wanted_order_, wanted);
       if (has_converged) break;

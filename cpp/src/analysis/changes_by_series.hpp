@@ -9,8 +9,8 @@
 /// is taken as N (N/M)/(1 - N/M).
 ///
 /// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
-/// numbers. Cost: for each eight names, four to six times the series of two links, and some twelve
-/// times that of a chain.
+/// numbers. Cost: for two links, six times a step of the run, and two more for each further eight
+/// names; for a chain, some twelve for each eight.
 #pragma once
 
 #include <memory>
@@ -19,6 +19,8 @@
 #include "analysis/variational_equations.hpp"
 
 namespace pendcore {
+
+class ChangesInCommon;
 
 class ChangesBySeries {
  public:
@@ -45,6 +47,7 @@ class ChangesBySeries {
   Convergence look_at(Part& part, double tolerance) const;
 
   std::vector<Part> parts_;
+  std::unique_ptr<ChangesInCommon> common_;
   std::vector<double> sums_;
   int laws_ = 0;  ///< VariationalEquations::changes_of_laws() of the parts
   int order_ = 0;

@@ -171,14 +171,23 @@ Saltation::NearMiss Saltation::near_miss(const WatchedStep& step) {
     bool was_away = polynomial_[0] > near;  // not at its zero since the last change
     for (const auto& [theta, value] : turning_points) {
       if (theta >= std::min(step.share, first.share)) break;
-      if (was_away && value <= near) {
-        first = {theta, joint_name(guard.joint) +
-                            (guard.is_on_rate() ? " nearly comes to rest" : " grazes its stop")};
-      }
+      if (was_away && value <= near) first = {theta, &guard};
       was_away |= value > near;
     }
   }
   return first;
+}
+
+std::string Saltation::why_none(const NearMiss& miss, const Matrix& changes) const {
+  constexpr double resolved = 1e-6;  // of a change, beside its errors
+  const Vector moved = change_of(*miss.guard, changes);
+  for (Eigen::Index column = 0; column < k_; ++column) {
+    const double size = 1.0 + largest(changes.col(column));
+    if (!(std::abs(moved[column]) > resolved * size)) continue;
+    return joint_name(miss.guard->joint) +
+           (miss.guard->is_on_rate() ? " nearly comes to rest" : " grazes its stop");
+  }
+  return {};
 }
 
 /// Whether the load jumps at a given time so near to this one that a slightly different motion
@@ -248,6 +257,18 @@ void Saltation::settle(Matrix& changes) const {
   }
 }
 
+/// The change of a linear guard with each name, (k).
+Vector Saltation::change_of(const JointGuard& guard, const Matrix& changes) const {
+  const auto& [offset, on_phi, on_phid] = guard.linear;
+  Vector change = on_phi * relative_rows(changes, 0, guard.joint) +
+                  on_phid * relative_rows(changes, n_, guard.joint);
+  if (guard.stop() == Side::none) return change;
+  for (const auto& one : equations_.parameters()) {
+    change[one.column] -= on_phi * one.supports[guard.joint].stop(guard.stop()).angle;
+  }
+  return change;
+}
+
 std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& change, const Vector& f,
                                                        const Matrix& changes) {
   const JointGuard& guard = *change.guard;
@@ -257,17 +278,13 @@ std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& chan
   const auto& [offset, on_phi, on_phid] = guard.linear;
   const double rate = relative(f.data(), j + 1);
   const double acceleration = relative(f.data() + n_, j + 1);
-  Crossing found{
-      .by_name = on_phi * relative_rows(changes, 0, j) + on_phid * relative_rows(changes, n_, j),
-      .slope = on_phi * rate + on_phid * acceleration,
-      .grazes = std::abs(acceleration) <= little * largest(f.tail(n_))};
+  Crossing found{.by_name = change_of(guard, changes),
+                 .slope = on_phi * rate + on_phid * acceleration,
+                 .grazes = std::abs(acceleration) <= little * largest(f.tail(n_))};
   if (guard.stop() == Side::none) return found;
   // Without its stop, the joint would turn back after this angle.
   const double beyond = 0.5 * rate * rate / (on_phi * acceleration);
   found.grazes = rate == 0.0 || (beyond > 0.0 && beyond < little);
-  for (const auto& one : equations_.parameters()) {
-    found.by_name[one.column] -= on_phi * one.supports[j].stop(guard.stop()).angle;
-  }
   return found;
 }
 

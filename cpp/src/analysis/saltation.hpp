@@ -44,12 +44,15 @@ class Saltation {
   /// nothing.
   std::string pass(const WatchedChange& change, Matrix& changes);
   /// The first place along a step that a joint's rate or its distance from a stop nearly reaches
-  /// zero, and turns back: a slightly different motion would have another law there.
+  /// zero, and turns back.
   struct NearMiss {
     double share = never;  ///< of the step; infinite if there is none
-    std::string what{};
+    const JointGuard* guard = nullptr;
   };
   NearMiss near_miss(const WatchedStep& step);
+  /// Says what a slightly different motion would meet there; nothing if none of the changes there
+  /// brings it nearer or farther.
+  std::string why_none(const NearMiss& miss, const Matrix& changes) const;
   /// Why some names alone have none any more since this was asked last, or nothing.
   std::string take_remark() { return std::exchange(remark_, {}); }
 
@@ -60,6 +63,7 @@ class Saltation {
     double slope;
     bool grazes;  ///< a slightly different motion would not come there
   };
+  Vector change_of(const JointGuard& guard, const Matrix& changes) const;
   std::optional<Crossing> crossing(const WatchedChange& change, const Vector& f,
                                    const Matrix& changes);
   std::optional<Crossing> crossing_of_torque(const WatchedChange& change, const Vector& f,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/changes_by_series.hpp"
 #include "analysis/collocation_kernels.hpp"
@@ -204,18 +205,24 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   cuts_left = most_cuts_of_step;
   const bool by_series =
       !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
-  const Saltation::NearMiss miss =
-      saltation && !is_over ? saltation->near_miss(step) : Saltation::NearMiss{};
+  Saltation::NearMiss miss{};
+  if (saltation && !is_over) miss = saltation->near_miss(step);
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
-  const auto advance_to = [&](double from, double to) {
-    if (is_over) return;
-    if (to > miss.share) {
-      refuse_from(t_start + miss.share * step.h, miss.what);
-    } else if (by_series) {
+  const auto advance_alone = [&](double from, double to) {
+    if (by_series) {
       series.evaluate(to, now);
     } else {
       advance(step, from, to, 0);
     }
+  };
+  const auto advance_to = [&](double from, double to) {
+    if (to > miss.share && !is_over) {
+      advance_alone(from, miss.share);
+      const std::string why = is_over ? "" : saltation->why_none(miss, now);
+      if (!why.empty()) refuse_from(t_start + miss.share * step.h, why);
+      from = std::exchange(miss.share, never);
+    }
+    if (!is_over) advance_alone(from, to);
   };
   double from = 0.0;
   for (; std::isfinite(next_share(step)); ++next_time) {

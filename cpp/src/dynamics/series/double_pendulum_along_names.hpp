@@ -1,12 +1,30 @@
 /// \file
-/// The series of double_pendulum_series.hpp with slopes along eight names at once.
+/// How the series of double_pendulum_series.hpp change along eight names at once.
 ///
-/// Values of both links are in one pack, slopes of each number in another one. What takes the time
-/// are the sums: two fused operations for each product and eight slopes. A value is read from
-/// memory into all places of a pack on the way to an operation; out of a register it would take an
-/// operation of its own.
+/// A change (dq, dqd) obeys linear equations, whose coefficients all names have in common. With N
+/// the n of the other link along the axes of this one, u = (n_y, -n_x), and P = gamma (s_0, c_0) -
+/// rho u''(other),
+///
+///     dqdd + (rho n.N - sigma) dqdd' = -rho (2 n.N_t dqd' + n.N_tt dq') - u.P dq
+///                                      + dgamma cos q - drho n.u''(other) + dsigma qdd' + dtau/A
+///
+/// From their series c of n.N, h of 2 n.N_t, g of n.N_tt and w of u.P, with sums over m <= k and
+/// j = k - m,
+///
+///     (k + 1) (k + 2) (dq_{k+2} + kappa dq'_{k+2}) = -rho sum_{m>=-1} e_m dq'_j
+///                                                    - sum_{m>=0} w_m dq_j + f_k
+///     e_m = j (j - 1) c_{m+2} + j h_{m+1} + g_m,   kappa = rho c_0 - sigma
+///
+/// Each e_m is a polynomial in k, with one c_{m+2} before k^2.
+///
+/// So an order of all eight changes of both links takes four fused operations for each order before
+/// it. Slopes of the recurrence for n and qd itself took sixteen.
+///
+/// Cost: for order p, the series of the values; nine sums of products that the names share; and
+/// 2 p^2 operations on packs for each eight names.
 #pragma once
 
+#include <array>
 #include <utility>
 
 #include "arithmetic/dual_rows.hpp"
@@ -16,68 +34,123 @@
 
 namespace pendcore {
 
-template <>
-struct SeriesOf<AlongNames> {
-  using Slopes = decltype(AlongNames::slope);
-  using Half = PairOf<AlongNames>;
-  using Row = Dual<Pairs, TwoPairs<Slopes>>;
-  using Rate = Half;
-  PENDCORE_INLINE static Rate rate(const Half& x) { return x; }
-  PENDCORE_INLINE static Half pair(const Rate& x) { return x; }
-  PENDCORE_INLINE static Half pair_at(const AlongNames* from) { return pair_of(from[0], from[1]); }
-  PENDCORE_INLINE static void put_row(AlongNames* to, const Row& row) {
-    to[0] = {row.value[0], row.slope.first.first};
-    to[1] = {row.value[1], row.slope.first.second};
-    to[2] = {row.value[2], row.slope.second.first};
-    to[3] = {row.value[3], row.slope.second.second};
-  }
-};
-template <>
-inline constexpr bool has_long_orders<AlongNames> = true;
+/// What the equations of changes have in common along a step: series in units of sigma.
+class ChangesInCommon {
+ public:
+  using Orders = Pack<8>;
+  static constexpr int room = 40;  ///< for the orders, in whole packs
+  using Series = std::array<double, room>;
 
-/// A row or a rate in memory, whose products are added to a sum.
-struct RowInMemory {
-  const SeriesOf<AlongNames>::Row* at;
+  /// The series of a step's values, and what the equations make of them, up to an order.
+  template <class OfLinks, class Torque>
+  PENDCORE_INLINE void find(const OfLinks& constants, const double* y, double sigma, int order,
+                            Torque& torque);
 
-  PENDCORE_INLINE const Pairs& values() const { return at->value; }
-  PENDCORE_INLINE double value(int i) const { return number(&at->value, i); }
-  PENDCORE_INLINE const auto& slopes(int i) const {
-    const auto& half = i < 2 ? at->slope.first : at->slope.second;
-    return i % 2 == 0 ? half.first : half.second;
-  }
-  template <class Values>
-  PENDCORE_INLINE static double number(const Values* values, int i) {
-    return reinterpret_cast<const double*>(values)[i];  // NOLINT(*-reinterpret-cast): see above
-  }
-};
-struct RateInMemory {
-  const SeriesOf<AlongNames>::Rate* at;
-
-  PENDCORE_INLINE Pairs values() const { return twice(at->value); }
-  PENDCORE_INLINE double value(int i) const { return RowInMemory::number(&at->value, i % 2); }
-  PENDCORE_INLINE const auto& slopes(int i) const {
-    return i % 2 == 0 ? at->slope.first : at->slope.second;
-  }
-};
-template <class Factor>
-PENDCORE_INLINE SeriesOf<AlongNames>::Row fma(const Factor& a, const RowInMemory& b,
-                                              const SeriesOf<AlongNames>::Row& c) {
-  const auto slopes = [&](int i, const auto& sum) __attribute__((always_inline)) {
-    return fma(a.value(i), b.slopes(i), fma(b.value(i), a.slopes(i), sum));
+  Series angle[2], rate[2], acceleration[2];  ///< in powers of sigma
+  Series cosine[2];                           ///< sigma^2 cos q
+  Series bend[2];                             ///< n.u''(other)
+  Series pull[2];                             ///< -w
+  Pair kappa;
+  /// -rho e_m = (square k + slope) k + constant, from m = -1 on.
+  struct OfAngle {
+    Series square, slope, constant;
   };
-  const auto& [low, high] = c.slope;
-  return {fma(Pairs(a.values()), b.values(), c.value),
-          {{slopes(0, low.first), slopes(1, low.second)},
-           {slopes(2, high.first), slopes(3, high.second)}}};
+  OfAngle of_angle[2];
+
+ private:
+  /// A vector along the axes of a link, with zeros before order 0, which is at `room`.
+  struct Vectors {
+    double x[2 * room]{}, y[2 * room]{};
+    PENDCORE_INLINE void set(int k, double x_k, double y_k) {
+      x[room + k] = x_k;
+      y[room + k] = y_k;
+    }
+  };
+  PENDCORE_INLINE static Orders eight_orders(const Vectors& a, const Vectors& b, int first);
+  PENDCORE_INLINE static void multiply(const Vectors& a, const Vectors& b, int order, double factor,
+                                       Series& product);
+
+  double coefficients_[4 * (highest_order + 1)];
+  Series c_, h_, g_;
+  Vectors n_[2], u_[2], other_, once_, twice_, pull_;
+};
+
+/// Orders first .. first + 7 of a.b.
+PENDCORE_INLINE ChangesInCommon::Orders ChangesInCommon::eight_orders(const Vectors& a,
+                                                                      const Vectors& b, int first) {
+  Orders x{}, y{};
+  for (int j = 0; j < first + 8; ++j) {
+    x = fma(a.x[room + j], load<Orders>(b.x + room + first - j), x);
+    y = fma(a.y[room + j], load<Orders>(b.y + room + first - j), y);
+  }
+  return x + y;
 }
-template <class Add>
-PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<AlongNames>& orders, const Add& add) {
-  return add.template operator()<SeriesOf<AlongNames>::Row>(
-      [&](std::ptrdiff_t j)
-          __attribute__((always_inline)) { return RowInMemory{&orders.pulls[j]}; },
-      [&](std::ptrdiff_t j)
-          __attribute__((always_inline)) { return RateInMemory{&orders.rates[j]}; },
-      [&](std::ptrdiff_t j) __attribute__((always_inline)) { return RowInMemory{&orders.n[j]}; });
+/// Sets orders 0 .. order - 1 of `product` to those of a.b, times a factor.
+PENDCORE_INLINE void ChangesInCommon::multiply(const Vectors& a, const Vectors& b, int order,
+                                               double factor, Series& product) {
+  for (int first = 0; first < order; first += 8) {
+    store(product.data() + first, Orders(factor * eight_orders(a, b, first)));
+  }
+}
+
+template <class OfLinks, class Torque>
+PENDCORE_INLINE void ChangesInCommon::find(const OfLinks& constants, const double* y, double sigma,
+                                           int order, Torque& torque) {
+  DoublePendulumOrders<double>::Last last;
+  DoublePendulumOrders<double> orders(constants, y, sigma, torque, coefficients_, last);
+  complete(orders, order, torque, coefficients_, last);
+  const Pair start = load<Pair>(y);
+  Pair s0, c0;
+  sine_cosine(start, s0, c0);
+  for (int i = 0; i < 2; ++i) {
+    Vectors& n = n_[i];
+    n.set(0, 0.0, 1.0);
+    n.set(1, orders.minus_rate[i], 0.0);
+    for (int k = 2; k < order + 2; ++k) n.set(k, orders.n[k][i], orders.n[k][2 + i]);
+    for (int k = 0; k < order; ++k) u_[i].set(k, n.y[room + k], -n.x[room + k]);
+    angle[i][0] = start[i];
+    for (int k = 0; k < order; ++k) {
+      rate[i][k] = orders.rates[k][i];
+      angle[i][k + 1] = inverse_of[k + 1] * orders.rates[k][i];
+      acceleration[i][k] = (k + 1) * orders.rates[k + 1][i];
+      cosine[i][k] = sigma * sigma * fma(s0[i], n.x[room + k], c0[i] * n.y[room + k]);
+    }
+  }
+  const double sine_12 = fma(s0[1], c0[0], -(c0[1] * s0[0]));  // of q_2 - q_1
+  const double cos = fma(c0[1], c0[0], s0[1] * s0[0]);
+  for (int i = 0; i < 2; ++i) {
+    const double sin = i == 0 ? sine_12 : -sine_12;
+    const Vectors& n = n_[1 - i];
+    for (int k = 0; k < order + 2; ++k) {
+      const double along = n.x[room + k], across = n.y[room + k];
+      other_.set(k, fma(cos, along, -(sin * across)), fma(sin, along, cos * across));
+    }
+    const double determinant = 1.0 / orders.inverse[i];
+    for (int k = 0; k <= order; ++k) {
+      const double by = 2.0 * (k + 1);
+      once_.set(k, by * other_.x[room + k + 1], by * other_.y[room + k + 1]);
+    }
+    for (int k = 0; k < order; ++k) {
+      const double by_both = (k + 1.0) * (k + 2.0);
+      twice_.set(k, by_both * other_.x[room + k + 2], by_both * other_.y[room + k + 2]);
+      pull_.set(k, determinant * orders.pulls[k][i], determinant * orders.pulls[k][2 + i]);
+    }
+    if (i == 0) multiply(n_[0], other_, order + 2, 1.0, c_);
+    multiply(n_[i], once_, order + 1, 1.0, h_);
+    multiply(n_[i], twice_, order, 1.0, g_);
+    multiply(u_[i], pull_, order, -1.0, pull[i]);
+    multiply(u_[i], twice_, order, -1.0, bend[i]);
+    const double rho = constants.coupling[i];
+    for (int m = -1; m < order; ++m) {
+      const double of_rate = h_[m + 1];
+      const double square = -rho * c_[m + 2];
+      of_angle[i].square[m + 1] = square;
+      of_angle[i].slope[m + 1] = -fma(2.0 * m + 1.0, square, rho * of_rate);
+      of_angle[i].constant[m + 1] =
+          fma(m * (m + 1.0), square, rho * (m * of_rate - (m == -1 ? 0.0 : g_[m])));
+    }
+  }
+  kappa = constants.coupling * c_[0] - constants.rotor;
 }
 
 /// Two links that turn freely, whose pivot stands still and which at most two waves drive.
@@ -96,18 +169,109 @@ class DoublePendulumAlongNames {
   DoublePendulumAlongNames(const Mechanism<AlongNames>& of, Effects effects);
 
   void set_order(int /*order*/) {}
-  PENDCORE_INLINE void expand(double t, const AlongNames* y, double sigma, int order,
-                              AlongNames* rows) const {
-    const TorqueLaws<Links, AlongNames> laws = torque_laws(effects_, factor_);
-    TorqueOrders<Links, AlongNames, Links> torque(laws, t, sigma);
-    expand_double_pendulum(constants_, y, sigma, order, torque, rows);
-  }
+  /// Finds what all names have in common on a step from a state y.
+  PENDCORE_INLINE void find_common(double t, const double* y, double sigma, int order,
+                                   ChangesInCommon& common) const;
+  /// Fills rows 1 .. order of `rows` with the changes, from those in row 0.
+  PENDCORE_INLINE void expand(const ChangesInCommon& common, double t, double sigma, int order,
+                              AlongNames* rows) const;
 
  private:
   Constants constants_;
   Links factor_;  ///< 1/A
   Effects effects_;
 };
+
+PENDCORE_INLINE void DoublePendulumAlongNames::find_common(double t, const double* y, double sigma,
+                                                           int order,
+                                                           ChangesInCommon& common) const {
+  const ConstantsOfDoublePendulum<double> constants{.weight = constants_.weight.value,
+                                                    .coupling = constants_.coupling.value,
+                                                    .rotor = constants_.rotor.value,
+                                                    .product = constants_.product.value[0],
+                                                    .delta = constants_.delta.value[0],
+                                                    .epsilon = constants_.epsilon.value[0]};
+  if (effects_.couples.empty() && effects_.waves == 0) {
+    NoTorque none;
+    return common.find(constants, y, sigma, order, none);
+  }
+  const TorqueLaws<Links, AlongNames> laws = torque_laws(effects_, factor_);
+  Couples<Pair> couples;
+  if (laws.couples != nullptr) {
+    each_field(couples, *laws.couples, [](Pair& to, const Links& from) { to = from.value; });
+    couples.has_powers = laws.couples->has_powers;
+  }
+  const TorqueLaws<Pair, double> values{.couples = laws.couples != nullptr ? &couples : nullptr,
+                                        .waves = laws.waves,
+                                        .angular_frequency = laws.angular_frequency.value,
+                                        .phase = laws.phase.value,
+                                        .gain = {laws.gain[0].value, laws.gain[1].value},
+                                        .factor = laws.factor.value};
+  TorqueOrders<Pair, double> torque(values, t, sigma);
+  common.find(constants, y, sigma, order, torque);
+}
+
+PENDCORE_INLINE void DoublePendulumAlongNames::expand(const ChangesInCommon& common, double t,
+                                                      double sigma, int order,
+                                                      AlongNames* rows) const {
+  using Slopes = decltype(AlongNames::slope);
+  const TorqueLaws<Links, AlongNames> laws = torque_laws(effects_, factor_);
+  TorqueOrders<Links, AlongNames, Links> torque(laws, t, sigma);
+  const auto both = [](const Links& x) { return std::array{x.slope.first, x.slope.second}; };
+  const std::array dgamma = both(constants_.weight), drho = both(constants_.coupling),
+                   dsigma = both(constants_.rotor);
+  const Pair& kappa = common.kappa;
+  const double determinant = 1.0 / fma(-kappa[0], kappa[1], 1.0);
+
+  Slopes changes[highest_order + 3][2];  // of the angles
+  double e[2][ChangesInCommon::room];    // from m = -1 on
+  for (int i = 0; i < 2; ++i) {
+    changes[0][i] = rows[i].slope;
+    changes[1][i] = sigma * rows[2 + i].slope;
+  }
+  const double per_sigma = inverse_of_power_of_two(sigma);
+  for (int k = 0; k < order; ++k) {
+    for (int i = 0; i < 2; ++i) {
+      const auto& [square, slope, constant] = common.of_angle[i];
+      for (int m = 0; m < k + 2; m += 8) {
+        const Pack<8> by_k = fma(static_cast<double>(k), load<Pack<8>>(square.data() + m),
+                                 load<Pack<8>>(slope.data() + m));
+        store(e[i] + m, fma(static_cast<double>(k), by_k, load<Pack<8>>(constant.data() + m)));
+      }
+    }
+    std::array<Slopes, 2> known, more{};
+    for (int i = 0; i < 2; ++i) {
+      known[i] = fma(common.cosine[i][k], dgamma[i],
+                     fma(-common.bend[i][k], drho[i], common.acceleration[1 - i][k] * dsigma[i]));
+    }
+    if (torque.are_any()) {
+      const auto links = [&](const auto& series, int order_of_change,
+                             double by) __attribute__((always_inline)) {
+        return Links{Pair{series[0][k], series[1][k]},
+                     {by * changes[order_of_change][0], by * changes[order_of_change][1]}};
+      };
+      const Links given =
+          torque.next(k, links(common.angle, k, 1.0), links(common.rate, k + 1, k + 1.0));
+      known[0] = known[0] + given.slope.first;
+      known[1] = known[1] + given.slope.second;
+    }
+    for (int j = 0; j <= k; ++j) {
+      known[0] = fma(e[0][k - j + 1], changes[j][1], known[0]);
+      known[1] = fma(e[1][k - j + 1], changes[j][0], known[1]);
+      more[0] = fma(common.pull[0][k - j], changes[j][0], more[0]);
+      more[1] = fma(common.pull[1][k - j], changes[j][1], more[1]);
+    }
+    const Slopes first = fma(e[0][0], changes[k + 1][1], known[0] + more[0]);
+    const Slopes second = fma(e[1][0], changes[k + 1][0], known[1] + more[1]);
+    const double share = inverse_of[k + 1] * inverse_of[k + 2] * determinant;
+    changes[k + 2][0] = share * fma(-kappa[0], second, first);
+    changes[k + 2][1] = share * fma(-kappa[1], first, second);
+    for (int i = 0; i < 2; ++i) {
+      rows[4 * (k + 1) + i].slope = changes[k + 1][i];
+      rows[4 * (k + 1) + 2 + i].slope = ((k + 2) * per_sigma) * changes[k + 2][i];
+    }
+  }
+}
 
 /// The constants are those of the closed forms (double_pendulum_with_effects.cpp).
 inline DoublePendulumAlongNames::DoublePendulumAlongNames(const Mechanism<AlongNames>& of,

@@ -317,10 +317,6 @@ PENDCORE_INLINE void DoublePendulumOrders<Number>::finish(std::ptrdiff_t k, Numb
   pulls[k] = joined(pull_x, fma_of_links(pull_cosine, y, pull_sine * x));
 }
 
-/// Whether an order of a series takes so many instructions that its code stands once.
-template <class Number>
-inline constexpr bool has_long_orders = false;
-
 /// Calls `add` with a type of values and with functions that return pull_j, qd_j and n_j; it
 /// returns TermsByAge of them. In lanes, the numbers of one link are added up after those of the
 /// other: the sums of a whole row would not fit into the registers.
@@ -358,6 +354,22 @@ PENDCORE_INLINE auto sums_of(const DoublePendulumOrders<Number>& orders, const A
   }
 }
 
+/// Computes orders 1 .. order - 1.
+template <class Number, class TorqueOrders>
+PENDCORE_INLINE void complete(DoublePendulumOrders<Number>& orders, int order, TorqueOrders& torque,
+                              Number* coefficients,
+                              typename DoublePendulumOrders<Number>::Last& last) {
+  using Row = typename DoublePendulumOrders<Number>::Row;
+  const auto sums = [&](const auto& add)
+                        __attribute__((always_inline)) { return sums_of(orders, add); };
+  const auto next = [&](std::ptrdiff_t k, const Row& along, const Row& across)
+                        __attribute__((always_inline)) {
+                          orders.next(k, along, across, torque, coefficients, last);
+                        };
+  next(1, Row{}, Row{});
+  expand_by_two<Row, (Lanes<Number>::width == 1)>(order, sums, next);
+}
+
 /// Fills rows 1 .. order of `coefficients` with the series from the state y, a row of four numbers,
 /// in units of sigma. `constants` are ConstantsOfDoublePendulum of numbers or of their constants;
 /// `torque` gives the series of the torques.
@@ -365,22 +377,9 @@ template <class Number, class OfLinks, class TorqueOrders>
 PENDCORE_INLINE void expand_double_pendulum(const OfLinks& constants, const Number* y,
                                             const ConstantOf<Number>& sigma, int order,
                                             TorqueOrders& torque, Number* coefficients) {
-  using Orders = DoublePendulumOrders<Number>;
-  using Row = typename Orders::Row;
-  typename Orders::Last last;
-  Orders orders(constants, y, sigma, torque, coefficients, last);
-  const auto sums = [&](const auto& add)
-                        __attribute__((always_inline)) { return sums_of(orders, add); };
-  const auto next = [&](std::ptrdiff_t k, const Row& along, const Row& across)
-                        __attribute__((always_inline)) {
-                          orders.next(k, along, across, torque, coefficients, last);
-                        };
-  if constexpr (has_long_orders<Number>) {
-    expand_one_by_one<Row>(order, sums, next);
-  } else {
-    next(1, Row{}, Row{});
-    expand_by_two<Row, (Lanes<Number>::width == 1)>(order, sums, next);
-  }
+  typename DoublePendulumOrders<Number>::Last last;
+  DoublePendulumOrders<Number> orders(constants, y, sigma, torque, coefficients, last);
+  complete(orders, order, torque, coefficients, last);
 }
 
 template <class Torque>

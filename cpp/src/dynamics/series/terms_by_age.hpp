@@ -158,28 +158,4 @@ PENDCORE_INLINE void expand_by_two(int order, const SumsOf& sums_of, const Next&
   }
 }
 
-/// The same from order 1 on, with one copy of `next`, for numbers whose orders take thousands of
-/// instructions.
-template <class Row, class SumsOf, class Next>
-PENDCORE_INLINE void expand_one_by_one(int order, const SumsOf& sums_of, const Next& next) {
-  TermsByAge<Row> sums;
-#pragma GCC unroll 1
-  for (std::ptrdiff_t k = 1; k < order; ++k) {
-    if (k == 2) {
-      sums =
-          sums_of([]<class Value>(const auto& pull, const auto& rate, const auto& n)
-                      __attribute__((always_inline)) { return first_terms<Value>(pull, rate, n); });
-    } else if (k % 2 == 0) {
-      sums = sums_of([k]<class Value>(const auto& pull, const auto& rate,
-                                      const auto& n) __attribute__((always_inline)) {
-        return with_newest_terms<Value>(older_terms<Value>(k, pull, rate, n), k, 1, pull, rate, n);
-      });
-    } else if (k > 1) {
-      sums.along = sums.next_along;
-      sums.across = sums.next_across;
-    }
-    next(k, sums.along, sums.across);
-  }
-}
-
 }  // namespace pendcore
