@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 from inspect import signature
 from math import inf
 from numbers import Real
@@ -33,6 +33,19 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     near = get_close_matches(name, names, n=1, cutoff=0.55)
     known_ones = f"known are {', '.join(names)}" if names else "there are none"
     return f"did you mean {near[0]!r}?" if near else known_ones
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """Return the end of a message that names the nearest of some names, of equals the first.
+
+    It is nothing if none is near.
+    """
+
+    def likeness(one: str) -> float:
+        return SequenceMatcher(None, one, str(name)).ratio()
+
+    near = max(known, key=likeness, default="")
+    return f": did you mean {near!r}?" if likeness(near) >= 0.6 else ""
 
 
 def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
