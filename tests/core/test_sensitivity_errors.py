@@ -120,3 +120,9 @@ def test_a_torque_that_turns_nothing_is_refused(name: str, told: str) -> None:
     locked = TEXTBOOK.replace(effects=[E.Lock(joint=1)])
     with pytest.raises(ValueError, match=told):
         pc.simulate(locked, (0, 1), [0.3, 0.5], sensitivities=[name])
+
+
+def test_names_of_an_array_are_texts() -> None:
+    sol = pc.simulate(TEXTBOOK, (0, 1), 0.5, sensitivities=np.array(["q0[1]", "gravity"]))
+    assert [type(name) for name in sol.sensitivity_names] == [str, str]
+    assert pc.simulate(TEXTBOOK, (0, 1), 0.5, sensitivities=[]).sensitivities is None

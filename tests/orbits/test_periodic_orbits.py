@@ -300,3 +300,5 @@ def test_impossible_sizes_are_refused():
     orbit = pc.periodic_orbit(pc.Scene(links=[pc.Link(mass=1.0, length=1.0)]), 0.5)
     with pytest.raises(ValueError, match="step = inf: must be finite and > 0"):
         orbit.continued("energy", until=-1.0, step=float("inf"))
+    with pytest.raises(ValueError, match=r"step = 0\.0: must be finite and > 0$"):
+        orbit.continued("energy", until=-1.0, step=0.0)

@@ -85,7 +85,7 @@ def text(name: str, value: object) -> str:
 def listed_names(argument: str, given: object, example: str, kind: type = str) -> tuple[Any, ...]:
     """Return what a list of names, or of another kind, holds; a text alone is none."""
     if isinstance(given, Iterable) and not isinstance(given, str):
-        names = tuple(given)
+        names = tuple(str.__str__(x) if isinstance(x, str) else x for x in given)  # no np.str_
         if all(isinstance(name, kind) for name in names):
             return names
     raise TypeError(f'{argument} = {given!r}: must be a list of names, such as ["{example}"]')
@@ -246,7 +246,7 @@ def vector(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[floa
     if array.ndim == 0:
         array = np.full(count, array)
     if array.shape != (count,):
-        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
+        raise ValueError(f"{name}: shape {array.shape}: must be ({count},){in_unit(unit)}")
     return tuple(array.tolist())
 
 

@@ -43,6 +43,10 @@ if TYPE_CHECKING:
     from pendcore.plotting.plot import What
 
 
+ENDED_FROM_OUTSIDE = ("max_steps", "max_turns", "time_limit", "interrupted")
+"""The statuses of runs that a limit or Ctrl-C ended before their ``t_end``."""
+
+
 class Solution:
     """The result of `simulate`.
 
@@ -236,8 +240,11 @@ class Solution:
 
     @property
     def can_resume(self) -> bool:
-        """Whether a limit or Ctrl-C ended the run before its ``t_end``, and `resume` gets there."""
-        return self.status in ("max_steps", "max_turns", "time_limit", "interrupted")
+        """Whether a limit or Ctrl-C ended the run before its ``t_end``, and `resume` gets there.
+
+        A run with sensitivities cannot be resumed.
+        """
+        return self.status in ENDED_FROM_OUTSIDE and not self.sensitivity_names
 
     @property
     def keeps_every_step(self) -> bool:

@@ -36,7 +36,7 @@ def finite_positive(name: str, value: Any, unit: str) -> float:
     """Return a number that is finite and above 0."""
     (given,) = numbers(name, [value], unit, finite=False)
     if not (np.isfinite(given) and given > 0):
-        raise ValueError(f"{name} = {value!r}: must be finite and > 0 ({unit})")
+        raise ValueError(f"{name} = {value!r}: must be finite and > 0{f' ({unit})' * bool(unit)}")
     return given
 
 
