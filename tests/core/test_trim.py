@@ -57,7 +57,7 @@ def test_trim_knows_what_holds_the_other_joints(effects: list[Any], rests: bool)
         ("torqe[1]", r"inputs: 'torqe\[1\]': must be a joint, 1 to 2, .*: did you mean 'torque\[1"),
         ("torque", r"inputs: 'torque': .* such as 'torque\[1\]': did you mean 'torque\[1\]'\?"),
         ("pivot.x", r"inputs: 'pivot\.x': must be a joint, 1 to 2, or its torque, such as 'torque"),
-        ("q0[1]", r"inputs: 'q0\[1\]': a start is no input: .* A has a column for \"q\[1\]\""),
+        ("q0[1]", r"inputs: 'q0\[1\]': must be a joint, 1 to 2, or its torque, such as 'torque"),
         (2, "inputs: torque in joint 2: a Lock holds this joint, which no torque turns: choose"),
     ],
 )

@@ -194,12 +194,13 @@ def driven_joints(
     inputs: Iterable[int | str], n: int, effects: Iterable[Any]
 ) -> tuple[int | str, ...]:
     """Return the joints that inputs drive; refuse inputs that are no torques that turn a joint."""
-    joints, _ = known_inputs(inputs)
+    given = different_names("inputs", inputs)
     known = [f"torque[{j}]" for j in range(1, n + 1)]
-    for one in joints:
-        if isinstance(one, str):
+    for one in given:
+        if isinstance(one, str) and not _TORQUE.fullmatch(one):
             wanted = f"must be a joint, 1 to {n}, or its torque, such as {known[0]!r}"
             raise ValueError(f"inputs: {one!r}: {wanted}{nearest(one, known)}")
+    joints, _ = known_inputs(given)
     for effect in effects:
         if effect.kind == "lock" and effect.joint in joints:
             raise ValueError(
