@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
+import control
 import mujoco
 import numpy as np
 import pendcore as pc
@@ -70,6 +71,24 @@ def of_mujoco(dt: float, integrator: Any) -> Jacobian:
     return jacobian
 
 
+def of_python_control(dt: float) -> Jacobian:
+    """The equations as a nonlinear system of python-control, which takes forward differences."""
+
+    def rates(t: float, x: Any, u: Any, params: Any) -> np.ndarray:
+        scene = driven([u[0], params["second torque"]])
+        return np.hstack([x[2:], scene.accelerations(t, x[:2], x[2:])])
+
+    motion = control.nlsys(rates, None, inputs=1, states=4)
+
+    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
+        held = {"second torque": torques[1]}
+        here = control.linearize(motion, np.hstack([q, qd]), torques[:1], params=held)
+        system = here.sample(dt)
+        return np.hstack([system.A, system.B])
+
+    return jacobian
+
+
 def of_the_linear_system(dt: float) -> Jacobian:
     def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
         system = driven(torques).linearize(q, qd, inputs=[1]).discretize(dt)
@@ -96,6 +115,7 @@ def of_runs(dt: float) -> Jacobian:
 WAYS: dict[str, Callable[[float], Jacobian]] = {
     "MuJoCo, `mjd_transitionFD`, Euler": lambda dt: of_mujoco(dt, EULER),
     "the same, `implicitfast`": lambda dt: of_mujoco(dt, IMPLICIT),
+    "python-control, `linearize(...).sample(dt)`": of_python_control,
     "`scene.linearize(...).discretize(dt)`": of_the_linear_system,
     "central differences of `pc.simulate`": of_runs,
 }

@@ -38,6 +38,7 @@ WHERE = {
     "dry": TRUST,
     "impact": TRUST,
     "motor": "[conventions.md](../reference/conventions.md#angles-and-torques-of-another-source)",
+    "user": "[Derivatives](../how_to/linearize.md)",
 }
 """The page that has more on the note of an account."""
 

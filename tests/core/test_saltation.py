@@ -220,7 +220,7 @@ def test_a_corner_of_one_name_leaves_the_others() -> None:
 
 
 def test_a_rod_that_returns_at_rest_to_its_stop_whatever_changes_has_derivatives() -> None:
-    """A plastic impact leaves it at rest; from there it comes back to that angle, and no farther."""
+    """A plastic impact leaves it at rest; from there it comes back to that angle, no farther."""
     verdict = judged(258)
     assert verdict.kind == "right", verdict
 

@@ -324,8 +324,10 @@ def test_cases_and_files_say_what_was_asked_for(tmp_path: Path) -> None:
 
 
 def test_a_run_with_them_is_not_resumed_without_a_word() -> None:
-    short = pc.simulate(TEXTBOOK, (0, 5), 0.5, max_steps=9, on_failure="ignore",
-                        sensitivities=["q0[1]"])  # fmt: skip
+    with pytest.warns(pc.PendcoreWarning, match="cannot be resumed: simulate again") as told:
+        short = pc.simulate(TEXTBOOK, (0, 5), 0.5, max_steps=9, sensitivities=["q0[1]"])
+    assert "solution.resume" not in str(told[0].message)
+    assert not short.can_resume
     with pytest.raises(ValueError, match=r"sensitivities = .*: are not continued"):
         short.resume(5.0)
 

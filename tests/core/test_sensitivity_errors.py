@@ -120,3 +120,59 @@ def test_a_torque_that_turns_nothing_is_refused(name: str, told: str) -> None:
     locked = TEXTBOOK.replace(effects=[E.Lock(joint=1)])
     with pytest.raises(ValueError, match=told):
         pc.simulate(locked, (0, 1), [0.3, 0.5], sensitivities=[name])
+
+
+def test_chaos_ends_what_derivatives_mean_and_print_says_when() -> None:
+    sol = pc.simulate(TEXTBOOK, (0, 30), 0.0, sensitivities=["q0[1]", "gravity"])
+    assert sol.sensitivities is not None
+    told = f"by q0[1] and gravity, up to {np.abs(sol.sensitivities).max():.2g}"
+    assert f"{told}; until when, sol.sensitivities_valid_until() says" in str(sol)
+    until = sol.sensitivities_valid_until()
+    best = pc.simulate(TEXTBOOK, (0, 30), 0.0, sensitivities=sol.sensitivity_names,
+                       rtol=1e-14, atol=1e-17, t_eval=sol.t)  # fmt: skip
+    assert best.sensitivities is not None
+    for k in range(2):
+        right = best.sensitivities[sol.t <= until[k], :, k]
+        found = sol.sensitivities[sol.t <= until[k], :, k]
+        assert np.abs(found - right).max() < 0.2 * np.abs(right).max()
+        later = (sol.t > until[k]) & (sol.t < until[k] + 1)
+        apart = np.abs(sol.sensitivities[later, :, k] - best.sensitivities[later, :, k]).max()
+        assert apart > 0.05 * np.abs(right).max()
+    assert (sol.sensitivities_valid_until(1e-6) < until).all()
+    assert (until <= sol.valid_until()).all()
+    assert f"{told}, to 10% until {until.min():.4g} s" in str(sol)
+    with pytest.raises(ValueError, match=r"limit = 0\.0: must be > 0 \(of the largest sensitivity"):
+        sol.sensitivities_valid_until(0)
+
+
+def test_a_graze_ends_them_and_so_does_the_run_of_their_error() -> None:
+    """The rod comes to rest just at its stop, where rounding decides: beyond, nothing is known."""
+    graze = E.JointStop(joint=1, range=(-9, np.pi - 0.3), restitution=0.5)
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[graze])
+    sol = pc.simulate(rod, (0, 3), 0.3, sensitivities=["q0[1]"])
+    errors = sol.sensitivity_errors()
+    assert np.isnan(errors[-1]).all()
+    assert np.isfinite(errors[0]).all()
+    (until,) = sol.sensitivities_valid_until()
+    assert 0.8 < until < 0.87  # s; half a period is 0.86 s
+    assert f"to 10% until {until:.4g} s" in str(sol)
+    errors[:] = 0  # it is the caller's
+    assert np.isnan(sol.sensitivity_errors()[-1]).all()
+
+
+def test_print_says_by_which_names_there_is_no_derivative() -> None:
+    rubs = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=0.5)])
+    with pytest.warns(pc.PendcoreWarning, match=r'none of "qd0\[1\]"'):
+        sol = pc.simulate(rubs, (0, 1), [0.6, 0.3], sensitivities=["q0[1]", "qd0[1]"])
+    assert ", none by qd0[1] from 0 s on; until when" in str(sol)
+    np.testing.assert_array_equal(sol.sensitivities_valid_until(), [1.0, 0.0])
+    assert "none by qd0[1] from 0 s on, to 10% to the end" in str(sol)
+    backward = pc.simulate(TEXTBOOK, (2, 0), 0.3, sensitivities=["gravity"], store="end")
+    np.testing.assert_array_equal(backward.sensitivities_valid_until(), [0.0])
+    assert "sensitivities" not in str(pc.simulate(TEXTBOOK, (0, 1), 0.3))
+
+
+def test_names_of_an_array_are_texts() -> None:
+    sol = pc.simulate(TEXTBOOK, (0, 1), 0.5, sensitivities=np.array(["q0[1]", "gravity"]))
+    assert [type(name) for name in sol.sensitivity_names] == [str, str]
+    assert pc.simulate(TEXTBOOK, (0, 1), 0.5, sensitivities=[]).sensitivities is None

@@ -49,3 +49,19 @@ def test_trim_knows_what_holds_the_other_joints(effects: list[Any], rests: bool)
         return
     with pytest.raises(ValueError, match=r"do not rest: joint 2 takes -4\.9035 N m, which nothing"):
         scene.trim([0.0, 0.0], inputs=[1])
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("torqe[1]", r"inputs: 'torqe\[1\]': must be a joint, 1 to 2, .*: did you mean 'torque\[1"),
+        ("torque", r"inputs: 'torque': .* such as 'torque\[1\]': did you mean 'torque\[1\]'\?"),
+        ("pivot.x", r"inputs: 'pivot\.x': must be a joint, 1 to 2, or its torque, such as 'torque"),
+        ("q0[1]", r"inputs: 'q0\[1\]': must be a joint, 1 to 2, or its torque, such as 'torque"),
+        (2, "inputs: torque in joint 2: a Lock holds this joint, which no torque turns: choose"),
+    ],
+)
+def test_only_torques_that_turn_a_joint_hold_it(given: Any, told: str) -> None:
+    locked = TEXTBOOK.replace(effects=[E.Lock(joint=2)])
+    with pytest.raises(ValueError, match=told):
+        locked.trim([0.3, 0.3], inputs=[1, given])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import functools
 import inspect
+import re
 from types import ModuleType
 
 import matplotlib as mpl
@@ -79,3 +80,11 @@ def test_an_example_whose_outcome_is_not_told_shows_the_kind(kind):
     docstring = effect_description.docstring(told)
     assert examples_of(docstring)[-1].want == f"'{kind}'\n"
     assert complaints(kind, docstring) == ""
+
+
+@pytest.mark.parametrize(
+    "name", ["simulate", "effects.User", "effects.CompiledUser", "Scene.linearize"]
+)
+def test_who_differentiates_a_function_of_the_users_says_how(name):
+    told = " ".join((inspect.getdoc(PUBLIC[name]) or "").split())
+    assert re.search("(differentiated|differentiate the function) by central differences", told)

@@ -8,6 +8,7 @@ connections by looking for neighbours among ten thousand motions of each manifol
 
 from __future__ import annotations
 
+import dataclasses
 from functools import cache
 
 import numpy as np
@@ -23,6 +24,7 @@ SCENE = pc.Scene(
     ],
     gravity=9.8085802336215,
 )  # fmt: skip
+TEXTBOOK = pc.Scene.textbook()
 DOWN = np.pi / 2
 """Their angles are from hanging: ours less this, or the mirror images of ours."""
 SECTIONS = {
@@ -172,7 +174,9 @@ def test_manifolds_that_cannot_meet_or_do_not_exist_are_refused():
     with pytest.raises(ValueError, match="no multiplier is off the unit circle"):
         hanging.manifold("stable")
     tube = orbit(1).manifold("unstable")
-    with pytest.raises(ValueError, match="until = None: give an event"):
+    with pytest.raises(
+        ValueError, match=r"until = None: must be an event, such as pc\.events\.Lin"
+    ):
         tube.crossings(3)
     small = pc.equilibria(SCENE)[1].orbit(1).manifold("stable")
     with pytest.raises(ValueError, match=r"energies 0\.2, -0\.175.* J: must agree"):
@@ -182,3 +186,38 @@ def test_manifolds_that_cannot_meet_or_do_not_exist_are_refused():
         pc.connections(turning.manifold("unstable"), turning.manifold("stable"))
     with pytest.raises(ValueError, match="an unstable manifold, and then a stable one"):
         pc.connections(small, tube)
+    with pytest.raises(TypeError, match="until = 5: must be an event, such as"):
+        orbit(1).manifold("unstable", until=5)
+
+
+TWICE = pc.events.LinkAngle(2, DOWN, every_turn=True, direction=1, terminal=2)
+
+
+@pytest.mark.parametrize(
+    ("stable", "count", "error", "told"),
+    [
+        (3, 9, TypeError, r'stable = 3: must be a manifold, as orbit\.manifold\("stable", until'),
+        ({}, 9, ValueError, "until = None: must be an event"),
+        (
+            {"until": SECTIONS["straight"]},
+            9,
+            ValueError,
+            "until = LinkAngle.* and JointAngle.*: must",
+        ),
+        (
+            {"until": SECTIONS["hanging 1"]},
+            9,
+            ValueError,
+            r"until = .*2.* and .*1.*: must be one sec",
+        ),
+        ({"until": TWICE}, 0, ValueError, "count = 0: must be >= 3"),
+        ({"until": SECTIONS["hanging 2"], "scene": TEXTBOOK}, 9, ValueError, "of two scenes"),
+    ],
+)
+def test_manifolds_without_a_common_section_are_refused_at_once(stable, count, error, told):
+    away = orbit(1).manifold("unstable", until=SECTIONS["hanging 2"])
+    if isinstance(stable, dict):
+        of = orbit(1).manifold("stable", until=stable.get("until"))
+        stable = dataclasses.replace(of, scene=stable.get("scene", SCENE))
+    with pytest.raises(error, match=told):
+        pc.connections(away, stable, count=count)

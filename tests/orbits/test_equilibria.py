@@ -111,10 +111,19 @@ def test_a_locked_joint_has_no_mode():
 
 def test_what_sticks_or_is_no_mode_is_refused():
     sticky = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=2, coulomb=0.3)])
-    with pytest.raises(ValueError, match="dry_joint_friction: where it sticks no motion is linear"):
-        pc.equilibria(sticky)
-    upright = pc.equilibria(TEXTBOOK)[-1]
-    with pytest.raises(ValueError, match="mode = 1: 0 modes neither grow nor decay here"):
-        upright.orbit(1)
+    stopped = TEXTBOOK.replace(effects=[E.JointStop(joint=2, range=(-1, 1))])
+    for scene, kind in ((sticky, "dry_joint_friction"), (stopped, "joint_stop")):
+        told = rf"scene: effect 1 \({kind}\): where it holds a joint, no motion is linear: leave"
+        with pytest.raises(ValueError, match=told):
+            pc.equilibria(scene)
+    told_of_modes = [
+        "mode = 0: must be 1 to 2: so many modes neither grow nor decay here",
+        "mode = 0: must be 1, the only mode that neither grows nor decays here",
+        "mode = 0: must be 1, the only mode that neither grows nor decays here",
+        "mode = 0: there is none: every mode grows or decays here",
+    ]
+    for one, told in zip(pc.equilibria(TEXTBOOK), told_of_modes, strict=True):
+        with pytest.raises(ValueError, match=told):
+            one.orbit(0)
     with pytest.raises(ValueError, match=r"near = None: 11 links have 2\*\*11 poses"):
         pc.equilibria(TEXTBOOK.replace(links=[pc.Link(mass=1.0, length=1.0)] * 11))

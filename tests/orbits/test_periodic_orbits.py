@@ -247,11 +247,26 @@ def test_bad_input_and_what_is_not_found_are_told():
     with pytest.raises(RuntimeError, match=r"still fails to close by .*e-0[89] rad"):
         pc.periodic_orbit(ROD, [-np.pi / 2 + 1e-5], arcs=1)
     with pytest.raises(RuntimeError, match="came to the equilibrium"):
-        pc.periodic_orbit(TEXTBOOK, np.pi / 2 + 1e-9, period=1.7, energy=-2 * TEXTBOOK.gravity)
+        pc.periodic_orbit(TEXTBOOK, np.pi / 2 + 1e-9, period=1.7)
+    with pytest.raises(
+        ValueError, match=r"energy = -20: must be > -19\.614 \(J\): links that hang"
+    ):
+        pc.periodic_orbit(TEXTBOOK, [0.6, 0.3], energy=-20.0)
+    links = [pc.Link(mass=1.0, length=1.0, center=x) for x in (-2.0, 0.5)]  # 1 stays upright
+    with pytest.warns(pc.PendcoreWarning, match="center"):
+        scene = TEXTBOOK.replace(links=links)
+    with pytest.raises(ValueError, match=r"energy = -15: must be > -14\.7105 \(J\)"):
+        pc.periodic_orbit(scene, [0.6, 0.3], energy=-15.0)
     push = E.Sinusoid(amplitude=1.0, angular_frequency=3.0)
     driven = TEXTBOOK.replace(effects=[E.Motor(joint=1, sinusoid=push)])
     with pytest.raises(ValueError, match="must be a whole number of its periods"):
         pc.periodic_orbit(driven, 0.5, period=2.0)
+    y = E.Sinusoid(amplitude=0.01, angular_frequency=3.0 * np.sqrt(2))
+    both = driven.replace(effects=[*driven.effects, E.DrivenPivot(y=y)])
+    with pytest.raises(
+        ValueError, match=r"period = None: .* not the same after 1\.48096 s, the per"
+    ):
+        pc.periodic_orbit(both, 0.5)
     with pytest.raises(ValueError, match="does not keep its energy"):
         pc.periodic_orbit(driven, 0.5, energy=1.0)
     spring = TEXTBOOK.replace(effects=[E.TorsionalSpring(joint=1, stiffness=1.0)])
@@ -288,8 +303,13 @@ def test_what_has_no_derivative_has_no_orbit():
         pc.periodic_orbit(locked, 0.5, period=2.5)
     stop = pc.effects.JointStop(joint=1, range=(-9, np.pi / 2), restitution=1.0)
     at_its_stop = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[stop])
-    with pytest.raises(RuntimeError, match="has no derivative by its start"):
+    with pytest.raises(RuntimeError, match=r"has no derivative .*: joint 1 is at its stop, and"):
         pc.periodic_orbit(at_its_stop, np.pi / 2, -1.0, period=0.8)
+    rest = pc.Scene.textbook().replace(effects=[E.DryJointFriction(joint=1, coulomb=0.5)])
+    with pytest.raises(
+        RuntimeError, match=r"has no derivative .*: joint 1 is at rest, where its fr"
+    ):
+        pc.periodic_orbit(rest, [0.6, 0.3], period=2.6)
 
 
 def test_impossible_sizes_are_refused():
@@ -300,3 +320,5 @@ def test_impossible_sizes_are_refused():
     orbit = pc.periodic_orbit(pc.Scene(links=[pc.Link(mass=1.0, length=1.0)]), 0.5)
     with pytest.raises(ValueError, match="step = inf: must be finite and > 0"):
         orbit.continued("energy", until=-1.0, step=float("inf"))
+    with pytest.raises(ValueError, match=r"step = 0\.0: must be finite and > 0$"):
+        orbit.continued("energy", until=-1.0, step=0.0)

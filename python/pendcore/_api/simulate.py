@@ -115,7 +115,9 @@ def simulate(
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
     wanted = asked.pop("sensitivities", None) if "sensitivities" in asked else None
-    names: tuple[str, ...] = listed_names("sensitivities", wanted, "q0[1]") if wanted else ()
+    names: tuple[str, ...] = ()
+    if wanted is not None:
+        names = listed_names("sensitivities", wanted, "q0[1]")
     if error is not None:
         require_options(asked, simulate)
         if names:  # a wrong name is told before anything runs

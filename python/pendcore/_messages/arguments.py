@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 from inspect import signature
 from math import inf
 from numbers import Real
@@ -33,6 +33,19 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     near = get_close_matches(name, names, n=1, cutoff=0.55)
     known_ones = f"known are {', '.join(names)}" if names else "there are none"
     return f"did you mean {near[0]!r}?" if near else known_ones
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """Return the end of a message that names the nearest of some names, of equals the first.
+
+    It is nothing if none is near.
+    """
+
+    def likeness(one: str) -> float:
+        return SequenceMatcher(None, one, str(name)).ratio()
+
+    near = max(known, key=likeness, default="")
+    return f": did you mean {near!r}?" if likeness(near) >= 0.6 else ""
 
 
 def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
@@ -72,7 +85,7 @@ def text(name: str, value: object) -> str:
 def listed_names(argument: str, given: object, example: str, kind: type = str) -> tuple[Any, ...]:
     """Return what a list of names, or of another kind, holds; a text alone is none."""
     if isinstance(given, Iterable) and not isinstance(given, str):
-        names = tuple(given)
+        names = tuple(str.__str__(x) if isinstance(x, str) else x for x in given)  # no np.str_
         if all(isinstance(name, kind) for name in names):
             return names
     raise TypeError(f'{argument} = {given!r}: must be a list of names, such as ["{example}"]')
@@ -233,7 +246,7 @@ def vector(name: str, value: npt.ArrayLike, count: int, unit: str) -> tuple[floa
     if array.ndim == 0:
         array = np.full(count, array)
     if array.shape != (count,):
-        raise ValueError(f"{name}: shape {array.shape}: must be ({count},) ({unit})")
+        raise ValueError(f"{name}: shape {array.shape}: must be ({count},){in_unit(unit)}")
     return tuple(array.tolist())
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pendcore._messages.handed_over import hand_over
 from pendcore._messages.warning import PendcoreWarning, warn
-from pendcore._run.solution import Solution
+from pendcore._run.solution import ENDED_FROM_OUTSIDE, Solution
 
 REMEDY = 'on_failure="raise" raises an error, on_failure="ignore" says nothing'
 
@@ -63,4 +63,8 @@ def _complaint(solution: Solution) -> str:
         return f"{complaint}; its error: {solution.accuracy.text()}"
     if solution.can_resume and "resume" not in message:
         complaint += f"; solution.resume({t_end!r}) continues it"
+    elif solution.sensitivity_names and solution.status in ENDED_FROM_OUTSIDE:
+        complaint += (
+            "; a run with sensitivities cannot be resumed: simulate again, with a larger limit"
+        )
     return complaint

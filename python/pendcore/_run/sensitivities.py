@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, moments
+from pendcore._messages.arguments import Floats, moments, positive
 from pendcore._run.call import run_again
 from pendcore._run.dense_output import ANOTHER_COURSE, ends_alike, simulated_anew
 from pendcore._run.solution import Solution
@@ -94,6 +94,20 @@ def errors_of(solution: Solution) -> Floats:
     # before it. There, the error is that of the times around.
     errors[1:-1] = np.minimum(errors[1:-1], np.maximum(errors[:-2], errors[2:]))
     return errors[places]
+
+
+def valid_until_of(solution: Solution, limit: float) -> Floats:
+    """See `Solution.sensitivities_valid_until`."""
+    share = positive("limit", limit, "of the largest sensitivity")
+    known, errors = sensitivities_there(solution), solution.sensitivity_errors()
+    start, _ = solution.t_span
+    if not len(solution.t):
+        return np.full(len(solution.sensitivity_names), start)
+    size = np.maximum.accumulate(np.abs(known).max(axis=1), axis=0)
+    is_past = ~(errors <= share * size)  # NaN is past
+    is_past |= np.abs(solution.t - start)[:, np.newaxis] > abs(solution.valid_until() - start)
+    count = np.where(is_past.any(axis=0), is_past.argmax(axis=0), len(is_past))
+    return np.append(start, solution.t)[count]
 
 
 def _more_exact(asked: dict[str, Any]) -> dict[str, Any]:

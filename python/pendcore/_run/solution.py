@@ -43,6 +43,10 @@ if TYPE_CHECKING:
     from pendcore.plotting.plot import What
 
 
+ENDED_FROM_OUTSIDE = ("max_steps", "max_turns", "time_limit", "interrupted")
+"""The statuses of runs that a limit or Ctrl-C ended before their ``t_end``."""
+
+
 class Solution:
     """The result of `simulate`.
 
@@ -58,6 +62,8 @@ class Solution:
     sensitivities : ndarray, (n_t, 2n, k), or None
         d(q, qd)/d(name) at each time, for each of the names that ``simulate(sensitivities=...)``
         was given, which ``sensitivity_names`` has; in rad and rad/s per unit of what is named.
+    known_sensitivity_errors : ndarray, (n_t, k), or None
+        Their errors, where `sensitivity_errors` has found them.
     accuracy : Accuracy or None
         What ``simulate(error=...)`` asked for, reached and paid; None for other runs. Its ``asked``
         and ``achieved`` are shares of the total length, and ``paid`` lists the runs that were made.
@@ -78,6 +84,7 @@ class Solution:
         "_run",
         "accuracy",
         "known_error",
+        "known_sensitivity_errors",
         "scene",
         "sensitivities",
         "sensitivity_names",
@@ -97,6 +104,7 @@ class Solution:
         self.sensitivities, self.sensitivity_names = sensitivities, sensitivity_names
         self._name = name and text("name", name)
         self.accuracy, self.known_error = accuracy, error
+        self.known_sensitivity_errors: Floats | None = None
         self._events: list[FoundEvents] | None = None
 
     @property
@@ -236,8 +244,11 @@ class Solution:
 
     @property
     def can_resume(self) -> bool:
-        """Whether a limit or Ctrl-C ended the run before its ``t_end``, and `resume` gets there."""
-        return self.status in ("max_steps", "max_turns", "time_limit", "interrupted")
+        """Whether a limit or Ctrl-C ended the run before its ``t_end``, and `resume` gets there.
+
+        A run with sensitivities cannot be resumed.
+        """
+        return self.status in ENDED_FROM_OUTSIDE and not self.sensitivity_names
 
     @property
     def keeps_every_step(self) -> bool:
@@ -495,13 +506,16 @@ class Solution:
         """Estimate how far the sensitivities of this run are off, as the run's tolerances let them.
 
         They are compared with those along a run whose tolerances are a tenth, or whose steps are
-        half as long. What is larger than the sensitivities themselves means nothing: past
-        `valid_until` they are those of the computed curve, and grow with its error.
+        half as long. Sensitivities that are no larger than their errors mean nothing:
+        `sensitivities_valid_until` says from when on.
 
         Returns
         -------
         ndarray, (n_t, k)
             The largest difference among the angles (rad) and rates (rad/s) per unit of each name.
+            NaN where one of the two runs has no derivative: where a joint only just grazes its
+            stop, the other run may do so though this one does not, and nothing is known of the
+            error from there on.
 
         Raises
         ------
@@ -517,7 +531,43 @@ class Solution:
         """
         from pendcore._run.sensitivities import errors_of
 
-        return errors_of(self)
+        if self.known_sensitivity_errors is None:
+            self.known_sensitivity_errors = errors_of(self)
+        return self.known_sensitivity_errors.copy()
+
+    def sensitivities_valid_until(self, limit: float = 0.1) -> Floats:
+        """Return how far to trust the sensitivities: when their errors pass a limit, by each name.
+
+        That is the last of the kept times up to which both hold: `sensitivity_errors` are at most
+        ``limit`` times the largest that the sensitivities by this name have been until then, and
+        the run itself is right, as `valid_until` says. Both errors grow as the sensitivities do.
+        Sensitivities are slopes: they tell what a change of a name makes of the run as long as
+        that is small, far below 1 rad.
+
+        Parameters
+        ----------
+        limit : float
+            > 0, a share of the largest sensitivity.
+
+        Returns
+        -------
+        ndarray, (k,)
+            s; the start of the run, if the error at the first kept time is beyond the limit.
+
+        Raises
+        ------
+        ValueError
+            If the run has no sensitivities, or a limit is not above 0.
+
+        Examples
+        --------
+        >>> sol = pc.simulate(pc.Scene.textbook(), (0, 40), 0.0, sensitivities=["q0[1]"])
+        >>> sol.sensitivities_valid_until().round(), sol.sensitivities_valid_until(1e-6).round()
+        (array([17.]), array([7.]))
+        """
+        from pendcore._run.sensitivities import valid_until_of
+
+        return valid_until_of(self, limit)
 
     def sensitivities_at(self, t: npt.ArrayLike) -> Floats:
         """Return the sensitivities at any time within the run, d(q, qd)/d(name).

@@ -97,6 +97,8 @@ CAVEATS = {
     'A run in which nothing can move any more has the status "at_rest".',
     "motor": "A positive torque turns its link towards growing angles, clockwise as seen, because "
     "y points down. A torque that a source counts counter-clockwise needs a minus.",
+    "user": "`linearize` and `simulate(sensitivities=...)` differentiate the function by "
+    "central differences, to some ten digits where it is smooth.",
 }
 """Notes on the laws whose work the ledger books on an account, by that account."""
 

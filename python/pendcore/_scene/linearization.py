@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, listed_names, positive, whole_number
+from pendcore._messages.arguments import Floats, listed_names, nearest, positive, whole_number
 
 _TORQUE = re.compile(r"torque\[(\d+)\]")
+_START = re.compile(r"(qd?)0\[(\d+)\]")
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -93,6 +94,8 @@ class Linearization:
         array([ 8.6000e-05, -1.2900e-04,  1.7160e-02, -2.5749e-02])
         """
         step = positive("dt", dt, "s")
+        if not np.isfinite(step):
+            raise ValueError(f"dt = {dt}: must be finite (s)")
         if self.dt is not None:
             raise ValueError(f"dt = {dt}: the system is discrete, with a step of {self.dt} s")
         n, k = self.B.shape
@@ -158,10 +161,53 @@ def _known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...],
         place = _TORQUE.fullmatch(one) if isinstance(one, str) else None
         if place is not None:
             given.append(whole_number("inputs", int(place[1])))
+        elif isinstance(one, str):
+            given.append(_no_start(str(one)))
         else:
-            given.append(str(one) if isinstance(one, str) else whole_number("inputs", one))
+            given.append(_joint(one))
     names = (one if isinstance(one, str) else f"torque[{one}]" for one in given)
     return tuple(given), different_names("inputs", names)
+
+
+def _no_start(name: str) -> str:
+    """Return a name that is none of the start's; what a state is for is A."""
+    place = _START.fullmatch(name)
+    if place is None:
+        return name
+    raise ValueError(
+        f"inputs: {name!r}: a start is no input: it stands in the state (q, qd), and A has a "
+        f'column for "{place[1]}[{place[2]}]"; inputs are torque[j], pivot.x, pivot.y and the '
+        "names of scene.parameters()"
+    )
+
+
+def _joint(one: Any) -> int:
+    try:
+        return whole_number("inputs", one)
+    except TypeError:
+        raise TypeError(
+            f'inputs = {one!r}: must be a joint, as a whole number, or a name, such as "torque[1]"'
+        ) from None
+
+
+def driven_joints(
+    inputs: Iterable[int | str], n: int, effects: Iterable[Any]
+) -> tuple[int | str, ...]:
+    """Return the joints that inputs drive; refuse inputs that are no torques that turn a joint."""
+    given = different_names("inputs", inputs)
+    known = [f"torque[{j}]" for j in range(1, n + 1)]
+    for one in given:
+        if isinstance(one, str) and not _TORQUE.fullmatch(one):
+            wanted = f"must be a joint, 1 to {n}, or its torque, such as {known[0]!r}"
+            raise ValueError(f"inputs: {one!r}: {wanted}{nearest(one, known)}")
+    joints, _ = known_inputs(given)
+    for effect in effects:
+        if effect.kind == "lock" and effect.joint in joints:
+            raise ValueError(
+                f"inputs: torque in joint {effect.joint}: a Lock holds this joint, which no torque "
+                "turns: choose another joint, or a scene without this Lock"
+            )
+    return joints
 
 
 @lru_cache

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from difflib import get_close_matches
 from typing import NamedTuple
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats
+from pendcore._messages.arguments import Floats, nearest
 from pendcore._messages.warning import silence
 from pendcore._scene.scene import Scene
 from pendcore.effects import DrivenPivot, Payload, RotorInertia, TorsionalSpring
@@ -98,10 +97,9 @@ def _place_of(name: object, n: int) -> tuple[str, int]:
     if place is not None and int(place[2]) <= n:
         return place[1], int(place[2]) - 1
     known = [*ENERGIES, *(f"{kind}[{i}]" for kind in KINDS for i in range(1, n + 1))]
-    near = get_close_matches(str(name), known, n=1)
     raise ValueError(
         f"outputs: {name!r}: must be one of {', '.join(f'{kind}[i]' for kind in KINDS)}, i from 1 "
-        f"to {n}, or {', '.join(ENERGIES)}" + (f": did you mean {near[0]!r}?" if near else "")
+        f"to {n}, or {', '.join(ENERGIES)}{nearest(name, known)}"
     )
 
 

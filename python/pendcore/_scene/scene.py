@@ -412,6 +412,7 @@ class Scene:
         ------
         ValueError
             If the other joints do not rest: the message says which, and what torque they lack.
+            Also for a torque in a joint that a `Lock` holds.
 
         Notes
         -----
@@ -427,7 +428,7 @@ class Scene:
         """
         from pendcore._scene import linearization
 
-        joints, _ = linearization.known_inputs(inputs)
+        joints = linearization.driven_joints(inputs, len(self.links), self.effects)
         (time,) = vector("t", t, 1, "s")
         return self._compiled.trim(time, numbers("q", q, "rad", len(self.links)), joints)
 

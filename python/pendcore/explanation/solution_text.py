@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import listed
+from pendcore.messages import Floats, in_a_row, listed
 from pendcore.methods import evaluations
 
 LIMIT = 0.1
 """rad: a run is right until its error passes this, unless another limit is asked for."""
+SHARE = 0.1
+"""Sensitivities are right until their error passes this share of the largest."""
+_MANY_NAMES = 4
 _MANY = 4000
 """With more times than this, a repr computes the energy at some of them only."""
 
@@ -30,6 +36,8 @@ def rows_of(solution: Solution) -> list[tuple[str, str]]:
     if len(t):
         rows.append(("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"))
     rows.append(("right", _right(solution)))
+    if solution.sensitivities is not None:
+        rows.append(("sensitivities", _sensitivities(solution, solution.sensitivities)))
     every = -(-len(t) // _MANY) or 1
     of_some = f" (of one time in {every})" if every > 1 else ""
     drift = solution.energy_drift(every)
@@ -51,8 +59,34 @@ def _right(solution: Solution) -> str:
     known = solution.known_error
     if known is None:
         return "not estimated yet: sol.valid_until() does, by a second run"
-    until, end = known.valid_until(LIMIT), solution.t_reached
-    return f"to {LIMIT:g} rad {'to the end' if until == end else f'until {until:.4g} s'}"
+    return f"to {LIMIT:g} rad {_until(solution, known.valid_until(LIMIT))}"
+
+
+def _sensitivities(solution: Solution, found: Floats) -> str:
+    """Return what the sensitivities are by, how large they are, and until when they are right."""
+    names, there = solution.sensitivity_names, np.isfinite(np.abs(found).max(axis=1))
+    told = f"by {_shortened(names)}"
+    if not there.any():
+        return f"{told}: none at the kept times"
+    told += f", up to {np.nanmax(np.abs(found)):.2g}"
+    if not there.all():
+        lacking = [name for name, has in zip(names, there.T, strict=True) if not has.all()]
+        since = solution.t[there.all(axis=1).argmin()]
+        told += f", none by {_shortened(lacking)} from {since:.4g} s on"
+    if solution.known_error is None or solution.known_sensitivity_errors is None:
+        return f"{told}; until when, sol.sensitivities_valid_until() says, by further runs"
+    start, _ = solution.t_span
+    ends = solution.sensitivities_valid_until(SHARE)[there.any(axis=0)]
+    return f"{told}, to {SHARE:.0%} {_until(solution, min(ends, key=lambda t: abs(t - start)))}"
+
+
+def _shortened(names: Sequence[str]) -> str:
+    few = names if len(names) <= _MANY_NAMES else (*names[:3], f"{len(names) - 3} more")
+    return in_a_row(few)
+
+
+def _until(solution: Solution, time: float) -> str:
+    return "to the end" if time == solution.t_reached else f"until {time:.4g} s"
 
 
 def _scene(solution: Solution) -> str:

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 
 from pendcore import Solution
-from pendcore.messages import Floats, whole_number
-from pendcore.orbits.manifold import Manifold
+from pendcore.messages import Floats, at_least
+from pendcore.orbits.manifold import SECTION, Manifold
 from pendcore.orbits.shooting import total_energy
 
 CORRECTIONS = 12
+FEWEST = 3
+"""So many points make a closed curve."""
 OFFSETS = (1.0, 0.5, 0.25)
 """The shares of the manifolds' offset at which a connection is computed."""
 ANOTHER: dict[str, Any] = {"method": "dop853", "rtol": 1e-14}
@@ -98,7 +100,7 @@ def connections(
     unstable, stable : Manifold
         They belong to one orbit, and the connections are homoclinic, or to two: heteroclinic.
     count : int
-        How many motions of each draw its curve.
+        How many motions of each draw its curve, >= 3.
 
     Returns
     -------
@@ -108,9 +110,9 @@ def connections(
 
     Raises
     ------
-    ValueError
-        If the manifolds have no section, are not of two links and one energy, or turn over in each
-        period, as those of negative multipliers do.
+    ValueError, TypeError
+        If the manifolds have no section in common, are not of one scene of two links and one
+        energy, or turn over in each period, as those of negative multipliers do.
 
     Examples
     --------
@@ -123,7 +125,8 @@ def connections(
     ['0.50', '0.50', '0.83', '0.95', '0.95', '1.57']
     """
     _check(unstable, stable)
-    curves = [one.crossings(whole_number("count", count)) for one in (unstable, stable)]
+    at_least("count", count, FEWEST)
+    curves = [one.crossings(count) for one in (unstable, stable)]
     found: list[Connection] = []
     for phases in _meetings(curves[0], curves[1]):
         made = _refined(unstable, stable, phases)
@@ -133,6 +136,10 @@ def connections(
 
 
 def _check(unstable: Manifold, stable: Manifold) -> None:
+    for name, one in (("unstable", unstable), ("stable", stable)):
+        if not isinstance(one, Manifold):
+            wanted = f'must be a manifold, as orbit.manifold("{name}", until=...) returns'
+            raise TypeError(f"{name} = {one!r}: {wanted}")
     if (unstable.stability, stable.stability) != ("unstable", "stable"):
         raise ValueError("connections: must be given an unstable manifold, and then a stable one")
     for one in (unstable, stable):
@@ -142,10 +149,24 @@ def _check(unstable: Manifold, stable: Manifold) -> None:
             raise ValueError(
                 f"connections: a manifold of multiplier {one.multiplier:.6g} has one side"
             )
+    if unstable.scene != stable.scene:
+        raise ValueError("connections: the manifolds are of two scenes: must be of one")
     energies = [float(total_energy(one.scene, one.arcs[0])) for one in (unstable, stable)]
     if abs(energies[0] - energies[1]) > 1e-8 * (1 + abs(energies[0])):
         raise ValueError(
             f"connections: energies {energies[0]:.9g}, {energies[1]:.9g} J: must agree"
+        )
+    if unstable.until is None or stable.until is None:
+        raise ValueError(f"until = None: {SECTION}")
+    # Each may come to it another way, or another time.
+    surfaces = [
+        replace(one, direction=0, terminal=False, name=None)
+        for one in (unstable.until, stable.until)
+    ]
+    if surfaces[0] != surfaces[1]:
+        raise ValueError(
+            f"connections: until = {surfaces[0]!r} and {surfaces[1]!r}: must be one section, "
+            "where both manifolds end"
         )
 
 

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendcore import Scene
 from pendcore.messages import Floats
 from pendcore.orbits.shooting import (
     GROWTH,
@@ -15,6 +14,7 @@ from pendcore.orbits.shooting import (
     Closed,
     NotClosedError,
     Shooting,
+    require_energy,
     tangent_of,
     total_energy,
     velocity,
@@ -42,10 +42,8 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
     Steps are in the units of `System.columns`, those of the states over all arcs, so that they mean
     the same however many arcs there are.
     """
-    if shooting.free == "energy" and until <= (least := _least_energy(shooting.scene)):
-        raise ValueError(
-            f"until = {until:.6g}: must be > {least:.6g} (J): links that hang at rest have no less"
-        )
+    if shooting.free == "energy":
+        require_energy("until", until, shooting.scene)
     here, found = shooting.closed(arcs), list[Closed]()
     onward = np.sign(until - arcs.value)
     step, ahead, stays = longest / 4, _ends(here.tangent, arcs), 0
@@ -81,14 +79,6 @@ def followed(shooting: Shooting, arcs: Arcs, until: float, longest: float, most:
             here = there._replace(arcs=halves, tangent=tangent_of(shooting.system(halves, halves)))
         step = min(longest, 1.5 * step) if there.corrections <= EASY else step
     return Family(found, f"{most} orbits are all that were asked for")
-
-
-def _least_energy(scene: Scene) -> float:
-    """Return the energy of all links hanging: springs add to it, where they are not at rest."""
-    effects = [effect for effect in scene.effects if effect.kind != "torsional_spring"]
-    n = len(scene.links)
-    hanging = np.repeat([np.copysign(np.pi / 2, scene.gravity), 0.0], n)
-    return float(total_energy(scene.replace(effects=effects), hanging))
 
 
 def _rest_between(shooting: Shooting, one: Arcs, other: Arcs) -> str:

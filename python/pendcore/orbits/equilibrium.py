@@ -124,8 +124,13 @@ class Equilibrium:
         True
         """
         there = self.frequencies
+        if not len(there):
+            raise ValueError(f"mode = {mode}: there is none: every mode grows or decays here")
         if not 1 <= whole_number("mode", mode) <= len(there):
-            raise ValueError(f"mode = {mode}: {len(there)} modes neither grow nor decay here")
+            told = "must be 1, the only mode that neither grows nor decays here"
+            if len(there) > 1:
+                told = f"must be 1 to {len(there)}: so many modes neither grow nor decay here"
+            raise ValueError(f"mode = {mode}: {told}")
         (size,) = vector("amplitude", amplitude, 1, "rad")
         if not size:
             raise ValueError("amplitude = 0.0: must not be 0 (rad)")
@@ -177,9 +182,12 @@ def equilibria(
         raise ValueError(f"near = None: {n} links have 2**{n} poses to begin from: give one")
     else:
         poses = [np.pi / 2 * np.array(signs) for signs in product([1, -1], repeat=n)]
-    for effect in scene.effects:
+    for i, effect in enumerate(scene.effects, 1):
         if effect.description.jumps_or_sticks:
-            raise ValueError(f"equilibria: {effect.kind}: where it sticks no motion is linear")
+            raise ValueError(
+                f"scene: effect {i} ({effect.kind}): where it holds a joint, no motion is linear: "
+                "leave it out, scene.replace(effects=[...])"
+            )
     found: list[Equilibrium] = []
     for pose in poses:
         free = FreeAngles(scene, t, pose)

@@ -36,7 +36,7 @@ def finite_positive(name: str, value: Any, unit: str) -> float:
     """Return a number that is finite and above 0."""
     (given,) = numbers(name, [value], unit, finite=False)
     if not (np.isfinite(given) and given > 0):
-        raise ValueError(f"{name} = {value!r}: must be finite and > 0 ({unit})")
+        raise ValueError(f"{name} = {value!r}: must be finite and > 0{f' ({unit})' * bool(unit)}")
     return given
 
 
@@ -81,8 +81,22 @@ def first_return(scene: Scene, start: Floats) -> float:
     return float(times[back[0]])
 
 
-def depends_on_time(scene: Scene, start: Floats, period: float) -> bool:
-    """Whether anything depends on time; if so, it must come back after the period."""
+def period_of(scene: Scene, start: Floats, period: float | None) -> tuple[float, bool]:
+    """Return the period, guessed if none is given, and whether a drive sets it."""
+    if period is not None:
+        guess, taken_as = finite_positive("period", period, "s"), ""
+    elif scene.fastest_drive() > 0:
+        guess, taken_as = 2 * np.pi / scene.fastest_drive(), "the period of the fastest drive"
+    else:
+        guess, taken_as = first_return(scene, start), "when the motion first comes back"
+    return guess, _depends_on_time(scene, start, guess, taken_as)
+
+
+def _depends_on_time(scene: Scene, start: Floats, period: float, taken_as: str) -> bool:
+    """Whether anything depends on time; if so, it must come back after the period.
+
+    ``taken_as`` says what the period is, if it was not given.
+    """
     n = len(scene.links)
     near = start + 0.3 * np.sin(np.arange(len(_TIMES))[:, np.newaxis] * (1 + np.arange(2 * n)))
     q, qd = near[:, :n], near[:, n:]
@@ -91,10 +105,13 @@ def depends_on_time(scene: Scene, start: Floats, period: float) -> bool:
         return False
     again = scene.accelerations((1 + _TIMES) * period, q, qd)
     if np.abs(again - later).max() > 1e-9 * (1 + np.abs(later).max()):
-        raise ValueError(
-            f"period = {period}: what drives this scene is not the same after it: must be a whole "
-            "number of its periods (s)"
-        )
+        told = "what drives this scene is not the same after"
+        if taken_as:
+            raise ValueError(
+                f"period = None: {told} {period:.6g} s, {taken_as}: give one that is a whole "
+                "number of the periods of everything that drives it (s), if there is one"
+            )
+        raise ValueError(f"period = {period}: {told} it: must be a whole number of its periods (s)")
     return True
 
 

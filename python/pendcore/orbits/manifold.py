@@ -8,8 +8,11 @@ from typing import Any, Literal
 import numpy as np
 
 from pendcore import Scene, Solution, events, simulate
-from pendcore.messages import Floats, whole_number
-from pendcore.orbits.shooting import TOLERANCES, derivatives
+from pendcore.messages import Floats, at_least
+from pendcore.orbits.shooting import TOLERANCES, derivatives, silent_run
+
+SECTION = "must be an event, such as pc.events.LinkAngle(2, np.pi / 2, every_turn=True)"
+"""What ``until`` is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -71,7 +74,7 @@ class Manifold:
         if share:
             names = [f"{kind}[{i + 1}]" for kind in ("q0", "qd0") for i in range(size // 2)]
             span = (t0, t0 + share * self.period / m)
-            sol = simulate(self.scene, span, *np.split(state, 2), sensitivities=names, **TOLERANCES)
+            sol = silent_run(self.scene, span, state, sensitivities=names)
             even = abs(self.multiplier) ** (-share / m)
             state, along = sol.y[:, -1], even * derivatives(sol)[-1] @ along
         started: Floats = state + self.offset * along
@@ -102,7 +105,7 @@ class Manifold:
             If there is no ``until``.
         """
         if self.until is None:
-            raise ValueError("until = None: give an event, as events.LinkAngle(2, np.pi / 2)")
+            raise ValueError(f"until = None: {SECTION}")
         sol = self.run(phase, **{"store": "end", **options})
         if sol.status != "event":
             return np.full(self.arcs.shape[1], np.nan)
@@ -119,5 +122,5 @@ class Manifold:
         >>> orbit.manifold("unstable", until=hanging).crossings(3)[:, 1] / np.pi
         array([0.5, 0.5, 0.5])
         """
-        phases = np.arange(whole_number("count", count)) / count
+        phases = np.arange(at_least("count", count, 1)) / count
         return np.array([self.crossing(phase) for phase in phases])

@@ -14,20 +14,20 @@ from pendcore.messages import Floats, did_you_mean, require_scene, vector, whole
 from pendcore.orbits.continuation import followed
 from pendcore.orbits.guess import (
     cut_as_it_grows,
-    depends_on_time,
     finite_positive,
-    first_return,
+    period_of,
     require_free_joints,
     require_same_after,
     states_given,
 )
-from pendcore.orbits.manifold import Manifold
+from pendcore.orbits.manifold import SECTION, Manifold
 from pendcore.orbits.multipliers import Complexes, direction, multipliers, product
 from pendcore.orbits.shooting import (
     Arcs,
     Closed,
     NotClosedError,
     Shooting,
+    require_energy,
     total_energy,
     velocity,
 )
@@ -222,8 +222,9 @@ class PeriodicOrbit:
 
         Raises
         ------
-        ValueError
-            If the orbit has no such multiplier, or a pair of complex ones.
+        ValueError, TypeError
+            If the orbit has no such multiplier, or a pair of complex ones, or if an argument is
+            not what is asked for.
 
         Examples
         --------
@@ -234,6 +235,8 @@ class PeriodicOrbit:
         >>> tube.crossings(12).shape
         (12, 4)
         """
+        if until is not None and not isinstance(until, events.Event):
+            raise TypeError(f"until = {until!r}: {SECTION}")
         if stability not in ("stable", "unstable"):
             raise ValueError(f"stability = {stability!r}: must be 'stable' or 'unstable'")
         if side not in (1, -1):
@@ -337,13 +340,7 @@ def periodic_orbit(
     require_free_joints(scene)
     states, n = states_given(scene, q0, qd0), len(scene.links)
     start = states[0]
-    if period is not None:
-        period = finite_positive("period", period, "s")
-    elif scene.fastest_drive() > 0:
-        period = 2 * np.pi / scene.fastest_drive()
-    else:
-        period = first_return(scene, start)
-    is_forced = depends_on_time(scene, start, period)
+    period, is_forced = period_of(scene, start, period)
     keeps = not is_forced and {effect.kind for effect in scene.effects} <= KEEP_ENERGY
     if energy is not None and not keeps:
         raise ValueError(f"energy = {energy}: this scene does not keep its energy")
@@ -352,6 +349,8 @@ def periodic_orbit(
     if keeps:
         given = total_energy(scene, start) if energy is None else energy
         (kept,) = vector("energy", given, 1, "J")
+        if energy is not None:
+            require_energy("energy", kept, scene)
     shooting = Shooting(
         scene=scene, is_forced=is_forced, energy=kept, turns=np.zeros(n), unit=2 * np.pi / period
     )

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pendcore import PendcoreWarning, Scene, Solution, simulate
-from pendcore.messages import Floats
+from pendcore.messages import Floats, silence
 
 TOLERANCES: dict[str, Any] = {"rtol": 1e-13, "atol": 1e-16, "store": "end", "on_failure": "raise"}
 SECOND_OPINION: dict[str, Any] = {**TOLERANCES, "method": "dop853", "rtol": 1e-14}
@@ -81,14 +81,26 @@ def velocity(scene: Scene, t: float, state: Floats) -> Floats:
     return np.concatenate([qd, scene.accelerations(t, q, qd)])
 
 
+def silent_run(scene: Scene, span: tuple[float, float], start: Floats, **asked: Any) -> Solution:
+    """Simulate a trial; an error where the derivatives that were asked for do not go to its end."""
+    with warnings.catch_warnings():  # what is wrong with a trial is told later
+        warnings.simplefilter("ignore", PendcoreWarning)
+        run = simulate(scene, span, *np.split(start, 2), **{**TOLERANCES, **asked})
+    if run.sensitivities is None or np.isfinite(run.sensitivities).all():
+        return run
+    with warnings.catch_warnings(record=True) as heard:  # the last warning of a run says why
+        warnings.simplefilter("always")
+        simulate(scene, span, *np.split(start, 2), **{**TOLERANCES, **asked})
+    told = [str(one.message) for one in heard if issubclass(one.category, PendcoreWarning)]
+    raise NotClosedError(
+        f"the motion from q0 = {np.split(start, 2)[0].round(6).tolist()} has no derivative by its "
+        f"start, at least not to its end: {told[-1]}; begin elsewhere"
+    )
+
+
 def derivatives(run: Solution) -> Floats:
-    """The derivatives that were asked for, (n_t, 2n, k); an error where there are none."""
+    """The derivatives that a trial was asked for, (n_t, 2n, k)."""
     assert run.sensitivities is not None
-    if not np.isfinite(run.sensitivities).all():
-        raise NotClosedError(
-            f"the motion from q0 = {run.q[0].round(6).tolist()} has no derivative by its start, at "
-            "least not to its end: the warning of the run says why; begin elsewhere"
-        )
     return run.sensitivities
 
 
@@ -96,6 +108,25 @@ def total_energy(scene: Scene, states: Floats) -> Floats:
     """J, (...), of states (..., 2n)."""
     kinetic, potential = scene.energy(0.0, *np.split(states, 2, axis=-1))
     return kinetic + potential
+
+
+def require_energy(name: str, energy: float, scene: Scene) -> None:
+    """Refuse an energy that no motion has: springs add to that of weights, if they are not at rest.
+
+    Each link weighs in as a multiple of the sine of its angle.
+    """
+    effects = [one for one in scene.effects if one.kind != "torsional_spring"]
+    with silence():  # what is implausible was said of the scene itself
+        alone = scene.replace(effects=effects)
+    n = len(scene.links)
+    level = total_energy(alone, np.zeros(2 * n))
+    by_link = total_energy(alone, np.pi / 2 * np.eye(n, 2 * n)) - level
+    least = float(level - np.abs(by_link).sum())
+    if energy <= least:
+        raise ValueError(
+            f"{name} = {energy:.6g}: must be > {least:.6g} (J): links that hang at rest have no "
+            "less"
+        )
 
 
 def energy_gradient(scene: Scene, state: Floats) -> Floats:
@@ -163,12 +194,10 @@ class Shooting:
     def runs(self, arcs: Arcs, **asked: Any) -> list[Solution]:
         """Simulate each arc."""
         spans = pairwise(np.linspace(0.0, arcs.period, len(arcs.states) + 1))
-        with warnings.catch_warnings():  # these are trials: what is wrong with one is told later
-            warnings.simplefilter("ignore", PendcoreWarning)
-            return [
-                simulate(self.at(arcs.value), span, *np.split(start, 2), **{**TOLERANCES, **asked})
-                for start, span in zip(arcs.states, spans, strict=True)
-            ]
+        return [
+            silent_run(self.at(arcs.value), span, start, **asked)
+            for start, span in zip(arcs.states, spans, strict=True)
+        ]
 
     def growth(self, arcs: Arcs) -> float:
         """Return by how much a change of the state grows in an arc, at most and at any time."""
