@@ -55,9 +55,10 @@ def exact(
     return np.array(found)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3])
-def test_derivatives_are_those_of_the_reference(n: int) -> None:
-    described = [one for one in ACTING if one[1].get("joint", 1) <= n]
+@pytest.mark.parametrize(("n", "acting"), [(1, ACTING), (2, ACTING), (2, ACTING[:-1]), (3, ACTING)])
+def test_derivatives_are_those_of_the_reference(n: int, acting: list[Described]) -> None:
+    """Two links whose pivot stands still have a closed form."""
+    described = [one for one in acting if one[1].get("joint", 1) <= n]
     scene = scene_of(BODIES[:n], 9.807, described)
     q0, qd0 = [0.4, -0.9, 1.3][:n], [0.5, 1.0, -2.0][:n]
     times = np.array([0.0, 0.15, 0.4])
