@@ -27,11 +27,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=VALUES,
         help="of each parameter, in tests marked few_cases or with --share",
     )
+    group.addoption("--examples", type=int, help="of each random test")
     group.addoption("--share", type=int, default=1, help="run one test function of so many")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     sweeps.reduced = not config.getoption("full") and not any("::" in one for one in config.args)
+    sweeps.asked_for = config.getoption("examples")
     # A busy machine is not a failure.
     settings.register_profile("untimed", deadline=None, max_examples=random_examples(100))
     settings.load_profile("untimed")

@@ -28,10 +28,14 @@ class Case(Protocol):
 
 reduced = True
 """Whether sweeps are reduced; conftest.py says so before tests are read."""
+asked_for: int | None = None
+"""How many random examples each test tries, whatever it tries otherwise."""
 
 
 def random_examples(count: int) -> int:
     """Return how many of so many random examples a test tries: the first ones are plain."""
+    if asked_for is not None:
+        return asked_for
     return min(count, max(5, count // 3)) if reduced else count
 
 
