@@ -324,6 +324,22 @@ REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, list[str], str]] = {
             E.Motor(joint=1, table=E.Table(t=(0, 2), torque=(0.0, 2.0))),
         ]), 2.0, 0.0, 1.5 + 1e-9, ["qd0[1]"], "joint 1 nearly comes to rest",
     ),
+    "a graze from which a step begins": (
+        pc.Scene(links=[ROD]).replace(effects=[
+            E.JointStop(joint=1, range=(-9, np.pi - 1.1842660210100773 + 5e-8), restitution=0.5)
+        ]), 1.4, 1.1842660210100773, 0.0, ["q0[1]"], "joint 1 grazes its stop",
+    ),
+    "a graze of a heavy link": (
+        pc.Scene(links=[pc.Link(mass=1e6, length=1.0)]).replace(effects=[
+            E.JointStop(joint=1, range=(-9, np.pi - 0.3 + 5e-8), restitution=0.5)
+        ]), 1.5, 0.3, 0.0, ["torque[1]"], "joint 1 grazes its stop",
+    ),
+    "a graze beside one that the name does not move": (
+        scene_of([Body(1.0, 1.0, 0.5, 1 / 12), Body(0.5, 0.4, 0.0, 0.02)], 9.807, [
+            ("joint_stop", {"joint": 1, "range": (-9, np.pi - 0.3 + 5e-8), "restitution": 0.5}),
+            ("joint_stop", {"joint": 2, "range": (1.3 - np.pi - 5e-8, 9), "restitution": 0.5}),
+        ]), 1.5, [0.3, 1.0], 0.0, ["q0[2]"], "joint 2 grazes its stop",
+    ),
     "a restitution that is zero": (
         pc.Scene(links=[ROD]).replace(effects=[E.JointStop(joint=1, range=(-9, 0.8))]), 1.0, 0.2,
         3.0, ["effect[1].restitution"], "the restitution of joint 1 is 0, and can only grow",
@@ -331,11 +347,48 @@ REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, list[str], str]] = {
 }  # fmt: skip
 
 
+LOADS = [
+    E.Motor(joint=joint, table=E.Table(t=[0, 0.5, 1], torque=[low, high, high], hold=True))
+    for joint, low, high in ((1, 0.6, 3.6), (2, 0.0, 2.8))
+]
+HARDLY_DRIVEN = E.Table(t=[-1, 0.50001, 2], torque=[1e-6, 2e-6, 2e-6], hold=True)
+NOT_REFUSED: dict[str, tuple[pc.Scene, float, Any, Any, str]] = {
+    "two loads that jump at once on joints that friction holds": (
+        pc.Scene(links=[pc.Link(mass=0.67, length=0.4), pc.Link(mass=0.77, length=0.8)], effects=[
+            E.DryJointFriction(joint=1, coulomb=0.5, static=2.7),
+            E.DryJointFriction(joint=2, coulomb=1.24), *LOADS,
+        ]), 0.6, [1.459, 1.499], [0.0, 0.0], "q0[2]",
+    ),
+    "an impact a little before a weak load jumps": (
+        WEIGHTLESS.replace(effects=[
+            E.JointStop(joint=1, range=(-9, 1.0), restitution=0.5),
+            E.Motor(joint=1, table=HARDLY_DRIVEN),
+        ]), 1.0, [0.0], [2.0], "q0[1]",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NOT_REFUSED)
+def test_what_only_looks_like_a_coincidence_has_derivatives(name: str) -> None:
+    scene, t, q0, qd0, parameter = NOT_REFUSED[name]
+    found = derivatives(scene, t, q0, qd0, [parameter])
+    ways = []
+    for by in (1e-6, -1e-6):
+        start = np.array(q0)
+        start[int(parameter[3]) - 1] += by
+        there, here = (
+            pc.simulate(scene, (0, t), begin, qd0, store="end", **EXACTLY).y[:, -1]
+            for begin in (start, q0)
+        )
+        ways.append((there - here) / by)
+    np.testing.assert_allclose(found[:, 0], np.mean(ways, axis=0), rtol=0, atol=1e-5)
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_has_no_derivative_is_refused_by_name(name: str) -> None:
     scene, t, q0, qd0, names, told = REFUSED[name]
     with pytest.warns(pc.PendcoreWarning, match=told):
-        sol = pc.simulate(scene, (0, t), q0, qd0, sensitivities=names)
+        sol = pc.simulate(scene, (0, t), q0, qd0, rtol=1e-10, sensitivities=names)
     assert sol.success
     assert sol.sensitivities is not None
     assert len(sol.sensitivities) == len(sol.t)

@@ -25,8 +25,8 @@ constexpr int usual_order = 20;
 using SeriesOfChain = ChainSeries<AlongNames, EffectsWithSlopes<AlongNames>>;
 using AnySeries = std::variant<DoublePendulumAlongNames, SeriesOfChain>;
 
-PENDCORE_INLINE void expand_series(const SeriesOfChain* series, const ChangesInCommon* /*common*/,
-                                   double t, double sigma, int order, AlongNames* rows) {
+PENDCORE_INLINE void expand_series(const SeriesOfChain* series, double t, double sigma, int order,
+                                   AlongNames* rows) {
   series->expand(t, rows, sigma, order, rows);
 }
 PENDCORE_INLINE void expand_pendulum(const DoublePendulumAlongNames* series,
@@ -107,7 +107,7 @@ struct ChangesBySeries::Part {
     static const auto of_chain = fastest<&expand_series, wide_sets>();
     static const auto of_pendulum = fastest<&expand_pendulum, wide_sets>();
     if (const auto* const chain = std::get_if<SeriesOfChain>(&series)) {
-      of_chain(chain, &common, t, sigma, order, rows.data());
+      of_chain(chain, t, sigma, order, rows.data());
     } else {
       of_pendulum(&std::get<DoublePendulumAlongNames>(series), &common, t, sigma, order,
                   rows.data());

@@ -120,8 +120,11 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
     return border(change);
   }
   const JointGuard guard = *change.guard;
-  // What holds a joint takes a jump of the load, and may let it go at that given time.
-  if (is_again && was_given_ && !guard.is_linear()) {
+  // What holds a joint takes a jump of the load. It may let the joint go at that given time, and
+  // another jump may hold it again before it has moved.
+  const bool has_not_moved =
+      guard.is_on_rate() && (relative_rows(changes, n_, guard.joint).array() == 0.0).all();
+  if (is_again && was_given_ && (has_not_moved || !guard.is_linear())) {
     take_laws(change, changes);
     return border(change);
   }
@@ -154,36 +157,45 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   return border(change);
 }
 
-Saltation::NearMiss Saltation::near_miss(const WatchedStep& step) {
+std::vector<Saltation::NearMiss> Saltation::near_misses(const WatchedStep& step) {
   const double natural = equations_.equations().held_joints->natural_speed();
   polynomial_.resize(step.degree + 1);
-  NearMiss first;
+  std::vector<NearMiss> found;
   std::vector<TurningPoint> turning_points;
-  for (const JointGuard& guard : guards_) {
+  for (std::size_t i = 0; i < guards_.size(); ++i) {
+    const JointGuard& guard = guards_[i];
     guard.polynomial(step.rows, step.degree, static_cast<int>(step.y.size()), n_,
                      polynomial_.data());
     const double near = guard.is_on_rate() ? little * natural : little;
     double least = polynomial_[0];  // a lower bound
     for (int k = 1; k <= step.degree; ++k) least -= std::abs(polynomial_[k]);
-    if (least > near) continue;
-    turning_points.clear();
-    find_turning_points(polynomial_.data(), step.degree, turning_points);
-    bool was_away = polynomial_[0] > near;  // not at its zero since the last change
-    for (const auto& [theta, value] : turning_points) {
-      if (theta >= std::min(step.share, first.share)) break;
-      if (was_away && value <= near) first = {theta, &guard};
-      was_away |= value > near;
+    if (least > near) {
+      was_away_[i] = 1;
+      continue;
     }
+    turning_points.clear();
+    // A guard that the last step left near its zero may turn back just between the two.
+    if (polynomial_[0] <= near && polynomial_[1] >= 0.0) {
+      turning_points.push_back({0.0, polynomial_[0]});
+    }
+    find_turning_points(polynomial_.data(), step.degree, turning_points);
+    for (const auto& [theta, value] : turning_points) {
+      if (theta >= step.share) break;
+      if (was_away_[i] != 0 && value <= near) found.push_back({theta, &guard});
+      was_away_[i] |= value > near ? 1 : 0;
+    }
+    const double end = polynomial_at(polynomial_.data(), step.degree, step.share);
+    was_away_[i] |= end > near ? 1 : 0;
   }
-  return first;
+  std::ranges::sort(found, {}, &NearMiss::share);
+  return found;
 }
 
 std::string Saltation::why_none(const NearMiss& miss, const Matrix& changes) const {
   constexpr double resolved = 1e-6;  // of a change, beside its errors
   const Vector moved = change_of(*miss.guard, changes);
   for (Eigen::Index column = 0; column < k_; ++column) {
-    const double size = 1.0 + largest(changes.col(column));
-    if (!(std::abs(moved[column]) > resolved * size)) continue;
+    if (!(std::abs(moved[column]) > resolved * largest(changes.col(column)))) continue;
     return joint_name(miss.guard->joint) +
            (miss.guard->is_on_rate() ? " nearly comes to rest" : " grazes its stop");
   }
@@ -196,7 +208,8 @@ bool Saltation::meets_a_jump_of_load(const WatchedChange& change) const {
   const Scene& scene = equations_.scene();
   const double* const q = change.before.data();
   const double natural = equations_.equations().held_joints->natural_speed();
-  const double moment = (change.forward ? little : -little) / natural;
+  const double fastest = std::max(natural, largest(View(q + n_, n_)));
+  const double moment = (change.forward ? little : -little) / fastest;
   for (std::size_t i = 0; i < scene.effects.size(); ++i) {
     const EffectBehaviour& effect = *scene.effects[i];
     if (!effect.has_modes()) continue;
@@ -225,6 +238,7 @@ void Saltation::take_laws(const WatchedChange& change, Matrix& changes) {
   std::erase_if(guards_, [](const JointGuard& guard) {
     return guard.kind != Kind::friction && guard.stop() == Side::none;
   });
+  was_away_.assign(guards_.size(), 0);
   const std::vector<bool>& corners = equations_.mechanism_along().corners();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!corners[i]) continue;

@@ -43,13 +43,14 @@ class Saltation {
   /// Takes the laws after a change, and brings the changes there. Returns why there are none, or
   /// nothing.
   std::string pass(const WatchedChange& change, Matrix& changes);
-  /// The first place along a step that a joint's rate or its distance from a stop nearly reaches
-  /// zero, and turns back.
+  /// A place along a step where a joint's rate or its distance from a stop nearly reaches zero, and
+  /// turns back.
   struct NearMiss {
-    double share = never;  ///< of the step; infinite if there is none
-    const JointGuard* guard = nullptr;
+    double share;  ///< of the step
+    const JointGuard* guard;
   };
-  NearMiss near_miss(const WatchedStep& step);
+  /// All of them, in their order.
+  std::vector<NearMiss> near_misses(const WatchedStep& step);
   /// Says what a slightly different motion would meet there; nothing if none of the changes there
   /// brings it nearer or farther.
   std::string why_none(const NearMiss& miss, const Matrix& changes) const;
@@ -79,6 +80,7 @@ class Saltation {
   Eigen::Index k_;
   ImpactOnChanges impact_;
   std::vector<JointGuard> guards_;  ///< of stops and friction, by the laws in force
+  std::vector<char> was_away_;      ///< whether each has not been near its zero since these laws
   std::vector<double> polynomial_;  ///< of one of them, along a step
   std::string remark_;
   double last_ = never;       ///< s, when the laws last changed with a jump of rates or state

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "analysis/changes_by_series.hpp"
 #include "analysis/collocation_kernels.hpp"
@@ -205,8 +204,8 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   cuts_left = most_cuts_of_step;
   const bool by_series =
       !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
-  Saltation::NearMiss miss{};
-  if (saltation && !is_over) miss = saltation->near_miss(step);
+  std::vector<Saltation::NearMiss> misses;
+  if (saltation && !is_over) misses = saltation->near_misses(step);
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
   const auto advance_alone = [&](double from, double to) {
     if (by_series) {
@@ -216,11 +215,12 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
     }
   };
   const auto advance_to = [&](double from, double to) {
-    if (to > miss.share && !is_over) {
-      advance_alone(from, miss.share);
+    for (; !is_over && !misses.empty() && misses.front().share < to; misses.erase(misses.begin())) {
+      const Saltation::NearMiss& miss = misses.front();
+      if (miss.share > from) advance_alone(from, miss.share);
+      from = std::max(from, miss.share);
       const std::string why = is_over ? "" : saltation->why_none(miss, now);
       if (!why.empty()) refuse_from(t_start + miss.share * step.h, why);
-      from = std::exchange(miss.share, never);
     }
     if (!is_over) advance_alone(from, to);
   };

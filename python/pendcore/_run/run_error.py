@@ -65,6 +65,6 @@ def _complaint(solution: Solution) -> str:
         complaint += f"; solution.resume({t_end!r}) continues it"
     elif solution.sensitivity_names and solution.status in ENDED_FROM_OUTSIDE:
         complaint += (
-            "; a run with sensitivities cannot be resumed: simulate again, with a larger limit"
+            "; but a run with sensitivities cannot be resumed: simulate again, with a larger limit"
         )
     return complaint

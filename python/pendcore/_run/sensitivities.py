@@ -13,6 +13,8 @@ from pendcore._run.call import run_again
 from pendcore._run.dense_output import ANOTHER_COURSE, ends_alike, simulated_anew
 from pendcore._run.solution import Solution
 
+SMALLEST = 1e-10
+"""What a name moves by less than this, in rad or rad/s when it changes by its own size, is none."""
 TIGHTEST = 1e-12
 """Below this relative tolerance rounding shows: looser runs are compared."""
 
@@ -99,12 +101,16 @@ def errors_of(solution: Solution) -> Floats:
 def valid_until_of(solution: Solution, limit: float) -> Floats:
     """See `Solution.sensitivities_valid_until`."""
     share = positive("limit", limit, "of the largest sensitivity")
+    if not np.isfinite(share):
+        raise ValueError(f"limit = {share}: must be finite, a share of the largest sensitivity")
     known, errors = sensitivities_there(solution), solution.sensitivity_errors()
     start, _ = solution.t_span
     if not len(solution.t):
         return np.full(len(solution.sensitivity_names), start)
     size = np.maximum.accumulate(np.abs(known).max(axis=1), axis=0)
-    is_past = ~(errors <= share * size)  # NaN is past
+    values = solution.scene.parameters()
+    scale = np.array([abs(values.get(name, 1.0)) or 1.0 for name in solution.sensitivity_names])
+    is_past = ~(errors <= np.maximum(share * size, SMALLEST / scale))  # NaN is past
     is_past |= np.abs(solution.t - start)[:, np.newaxis] > abs(solution.valid_until() - start)
     count = np.where(is_past.any(axis=0), is_past.argmax(axis=0), len(is_past))
     return np.append(start, solution.t)[count]

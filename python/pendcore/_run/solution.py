@@ -533,6 +533,7 @@ class Solution:
 
         if self.known_sensitivity_errors is None:
             self.known_sensitivity_errors = errors_of(self)
+            self.known_sensitivity_errors.flags.writeable = False
         return self.known_sensitivity_errors.copy()
 
     def sensitivities_valid_until(self, limit: float = 0.1) -> Floats:
@@ -547,7 +548,7 @@ class Solution:
         Parameters
         ----------
         limit : float
-            > 0, a share of the largest sensitivity.
+            > 0 and finite, a share of the largest sensitivity.
 
         Returns
         -------
@@ -557,7 +558,7 @@ class Solution:
         Raises
         ------
         ValueError
-            If the run has no sensitivities, or a limit is not above 0.
+            If the run has no sensitivities, or a limit is not above 0 or not finite.
 
         Examples
         --------

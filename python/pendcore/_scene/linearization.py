@@ -14,7 +14,7 @@ from pendcore import _core
 from pendcore._messages.arguments import Floats, listed_names, nearest, positive, whole_number
 
 _TORQUE = re.compile(r"torque\[(\d+)\]")
-_START = re.compile(r"(qd?)0\[(\d+)\]")
+_START = re.compile(r"qd?0?\[\d+\]")
 
 
 @dataclass(slots=True, eq=False, repr=False)
@@ -171,13 +171,11 @@ def _known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...],
 
 def _no_start(name: str) -> str:
     """Return a name that is none of the start's; what a state is for is A."""
-    place = _START.fullmatch(name)
-    if place is None:
+    if not _START.fullmatch(name):
         return name
     raise ValueError(
-        f"inputs: {name!r}: a start is no input: it stands in the state (q, qd), and A has a "
-        f'column for "{place[1]}[{place[2]}]"; inputs are torque[j], pivot.x, pivot.y and the '
-        "names of scene.parameters()"
+        f"inputs: {name!r}: a start is no input: it stands in the state (q, qd), by which A is; "
+        "inputs are torque[j], pivot.x, pivot.y and the names of scene.parameters()"
     )
 
 

@@ -92,9 +92,10 @@ def silent_run(scene: Scene, span: tuple[float, float], start: Floats, **asked: 
         warnings.simplefilter("always")
         simulate(scene, span, *np.split(start, 2), **{**TOLERANCES, **asked})
     told = [str(one.message) for one in heard if issubclass(one.category, PendcoreWarning)]
+    why = f": {told[-1]}" if told else ""
     raise NotClosedError(
         f"the motion from q0 = {np.split(start, 2)[0].round(6).tolist()} has no derivative by its "
-        f"start, at least not to its end: {told[-1]}; begin elsewhere"
+        f"start, at least not to its end{why}; begin elsewhere"
     )
 
 

@@ -6,7 +6,7 @@
 /// rho u''(other),
 ///
 ///     dqdd + (rho n.N - sigma) dqdd' = -rho (2 n.N_t dqd' + n.N_tt dq') - u.P dq
-///                                      + dgamma cos q - drho n.u''(other) + dsigma qdd' + dtau/A
+///                                      + dgamma cos q - drho n.u''(other) + dsigma qdd' + d(tau/A)
 ///
 /// From their series c of n.N, h of 2 n.N_t, g of n.N_tt and w of u.P, with sums over m <= k and
 /// j = k - m,
@@ -38,7 +38,8 @@ namespace pendcore {
 class ChangesInCommon {
  public:
   using Orders = Pack<8>;
-  static constexpr int room = 40;  ///< for the orders, in whole packs
+  static constexpr int room = 48;  ///< for the orders, and a pack of zeros after them
+  static_assert(highest_order + 2 + 8 <= room);
   using Series = std::array<double, room>;
 
   /// The series of a step's values, and what the equations make of them, up to an order.
@@ -64,6 +65,11 @@ class ChangesInCommon {
     PENDCORE_INLINE void set(int k, double x_k, double y_k) {
       x[room + k] = x_k;
       y[room + k] = y_k;
+    }
+    /// Ends the series before an order: what a longer one has left may be infinite.
+    PENDCORE_INLINE void end(int order) {
+      store(x + room + order, Orders{});
+      store(y + room + order, Orders{});
     }
   };
   PENDCORE_INLINE static Orders eight_orders(const Vectors& a, const Vectors& b, int first);
@@ -107,7 +113,9 @@ PENDCORE_INLINE void ChangesInCommon::find(const OfLinks& constants, const doubl
     n.set(0, 0.0, 1.0);
     n.set(1, orders.minus_rate[i], 0.0);
     for (int k = 2; k < order + 2; ++k) n.set(k, orders.n[k][i], orders.n[k][2 + i]);
+    n.end(order + 2);
     for (int k = 0; k < order; ++k) u_[i].set(k, n.y[room + k], -n.x[room + k]);
+    u_[i].end(order);
     angle[i][0] = start[i];
     for (int k = 0; k < order; ++k) {
       rate[i][k] = orders.rates[k][i];
@@ -135,6 +143,10 @@ PENDCORE_INLINE void ChangesInCommon::find(const OfLinks& constants, const doubl
       twice_.set(k, by_both * other_.x[room + k + 2], by_both * other_.y[room + k + 2]);
       pull_.set(k, determinant * orders.pulls[k][i], determinant * orders.pulls[k][2 + i]);
     }
+    other_.end(order + 2);
+    once_.end(order + 1);
+    twice_.end(order);
+    pull_.end(order);
     if (i == 0) multiply(n_[0], other_, order + 2, 1.0, c_);
     multiply(n_[i], once_, order + 1, 1.0, h_);
     multiply(n_[i], twice_, order, 1.0, g_);
