@@ -2,11 +2,12 @@
 /// The changes of a motion along one step, by the Taylor series of the motion on numbers with
 /// slopes along eight names at once (dynamics/series).
 ///
-/// The coefficients of a change are the slopes of the coefficients of the motion. So the series
-/// from the state and its changes at the start of a step has the changes anywhere in the step,
-/// whichever method made the step. Its order follows from how fast the slopes fall: with N the
-/// largest of the last four at the end of the step, and M that of the four before, what is left out
-/// is taken as N (N/M)/(1 - N/M).
+/// The coefficients of a change are the slopes of the coefficients of the motion; those of two
+/// links have a recurrence of their own (double_pendulum_along_names.hpp). So the series from the
+/// state and its changes at the start of a step has the changes anywhere in the step, whichever
+/// method made the step. Its order follows from how fast the slopes fall: with N the largest of the
+/// last four at the end of the step, and M that of the four before, what is left out is taken as
+/// N (N/M)/(1 - N/M).
 ///
 /// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
 /// numbers. Cost: for two links, six times a step of the run, and two more for each further eight

@@ -121,10 +121,10 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   }
   const JointGuard guard = *change.guard;
   // What holds a joint takes a jump of the load. It may let the joint go at that given time, and
-  // another jump may hold it again before it has moved.
-  const bool has_not_moved =
+  // another jump may hold it again before it has moved, whatever the names change.
+  const bool is_held_again =
       guard.is_on_rate() && (relative_rows(changes, n_, guard.joint).array() == 0.0).all();
-  if (is_again && was_given_ && (has_not_moved || !guard.is_linear())) {
+  if (is_again && was_given_ && (is_held_again || !guard.is_linear())) {
     take_laws(change, changes);
     return border(change);
   }

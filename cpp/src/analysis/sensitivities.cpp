@@ -205,6 +205,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   const bool by_series =
       !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
   std::vector<Saltation::NearMiss> misses;
+  std::size_t next_miss = 0;
   if (saltation && !is_over) misses = saltation->near_misses(step);
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
   const auto advance_alone = [&](double from, double to) {
@@ -215,8 +216,8 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
     }
   };
   const auto advance_to = [&](double from, double to) {
-    for (; !is_over && !misses.empty() && misses.front().share < to; misses.erase(misses.begin())) {
-      const Saltation::NearMiss& miss = misses.front();
+    for (; !is_over && next_miss < misses.size() && misses[next_miss].share < to; ++next_miss) {
+      const Saltation::NearMiss& miss = misses[next_miss];
       if (miss.share > from) advance_alone(from, miss.share);
       from = std::max(from, miss.share);
       const std::string why = is_over ? "" : saltation->why_none(miss, now);

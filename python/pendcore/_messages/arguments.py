@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
-from difflib import SequenceMatcher, get_close_matches
+from difflib import SequenceMatcher
 from inspect import signature
 from math import inf
 from numbers import Real
@@ -30,22 +30,25 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     for meant, others in OTHER_NAMES.items():
         if meant in names and name.replace("_", "") in [x.replace("_", "") for x in others]:
             return f"did you mean {meant!r}?"
-    near = get_close_matches(name, names, n=1, cutoff=0.55)
     known_ones = f"known are {', '.join(names)}" if names else "there are none"
-    return f"did you mean {near[0]!r}?" if near else known_ones
+    near = _nearest(name, names, 0.55)
+    return f"did you mean {near!r}?" if near else known_ones
 
 
-def nearest(name: object, known: Iterable[str]) -> str:
-    """Return the end of a message that names the nearest of some names, of equals the first.
+def suggestion(name: object, known: Iterable[str]) -> str:
+    """Return the end of a message that has said already what is known; nothing if none is near."""
+    near = _nearest(str(name), known, 0.6)
+    return f": did you mean {near!r}?" if near else ""
 
-    It is nothing if none is near.
-    """
+
+def _nearest(name: str, known: Iterable[str], least: float) -> str:
+    """Return the most alike of some names, of equals the first; "" if none is alike enough."""
 
     def likeness(one: str) -> float:
-        return SequenceMatcher(None, one, str(name)).ratio()
+        return SequenceMatcher(None, one, name).ratio()
 
     near = max(known, key=likeness, default="")
-    return f": did you mean {near!r}?" if likeness(near) >= 0.6 else ""
+    return near if likeness(near) >= least else ""
 
 
 def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:

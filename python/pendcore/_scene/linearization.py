@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 
 from pendcore import _core
-from pendcore._messages.arguments import Floats, listed_names, nearest, positive, whole_number
+from pendcore._messages.arguments import (
+    Floats,
+    listed_names,
+    positive,
+    suggestion,
+    whole_number,
+)
 
 _TORQUE = re.compile(r"torque\[(\d+)\]")
 _START = re.compile(r"qd?0?\[\d+\]")
@@ -170,7 +176,7 @@ def _known_inputs(inputs: tuple[int | str, ...]) -> tuple[tuple[int | str, ...],
 
 
 def _no_start(name: str) -> str:
-    """Return a name that is none of the start's; what a state is for is A."""
+    """Return a name as it is; refuse that of a start, which is no input."""
     if not _START.fullmatch(name):
         return name
     raise ValueError(
@@ -197,7 +203,7 @@ def driven_joints(
     for one in given:
         if isinstance(one, str) and not _TORQUE.fullmatch(one):
             wanted = f"must be a joint, 1 to {n}, or its torque, such as {known[0]!r}"
-            raise ValueError(f"inputs: {one!r}: {wanted}{nearest(one, known)}")
+            raise ValueError(f"inputs: {one!r}: {wanted}{suggestion(one, known)}")
     joints, _ = known_inputs(given)
     for effect in effects:
         if effect.kind == "lock" and effect.joint in joints:

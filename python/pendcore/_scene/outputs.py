@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendcore._messages.arguments import Floats, nearest
+from pendcore._messages.arguments import Floats, suggestion
 from pendcore._messages.warning import silence
 from pendcore._scene.scene import Scene
 from pendcore.effects import DrivenPivot, Payload, RotorInertia, TorsionalSpring
@@ -99,7 +99,7 @@ def _place_of(name: object, n: int) -> tuple[str, int]:
     known = [*ENERGIES, *(f"{kind}[{i}]" for kind in KINDS for i in range(1, n + 1))]
     raise ValueError(
         f"outputs: {name!r}: must be one of {', '.join(f'{kind}[i]' for kind in KINDS)}, i from 1 "
-        f"to {n}, or {', '.join(ENERGIES)}{nearest(name, known)}"
+        f"to {n}, or {', '.join(ENERGIES)}{suggestion(name, known)}"
     )
 
 

@@ -37,7 +37,7 @@ namespace pendcore {
 /// What the equations of changes have in common along a step: series in units of sigma.
 class ChangesInCommon {
  public:
-  using Orders = Pack<8>;
+  using Orders = Pack<8>;          ///< eight orders of a series
   static constexpr int room = 48;  ///< for the orders, and a pack of zeros after them
   static_assert(highest_order + 2 + 8 <= room);
   using Series = std::array<double, room>;
@@ -227,6 +227,7 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const ChangesInCommon& com
                                                       double sigma, int order,
                                                       AlongNames* rows) const {
   using Slopes = decltype(AlongNames::slope);
+  using Orders = ChangesInCommon::Orders;
   const TorqueLaws<Links, AlongNames> laws = torque_laws(effects_, factor_);
   TorqueOrders<Links, AlongNames, Links> torque(laws, t, sigma);
   const auto both = [](const Links& x) { return std::array{x.slope.first, x.slope.second}; };
@@ -245,10 +246,10 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const ChangesInCommon& com
   for (int k = 0; k < order; ++k) {
     for (int i = 0; i < 2; ++i) {
       const auto& [square, slope, constant] = common.of_angle[i];
-      for (int m = 0; m < k + 2; m += 8) {
-        const Pack<8> by_k = fma(static_cast<double>(k), load<Pack<8>>(square.data() + m),
-                                 load<Pack<8>>(slope.data() + m));
-        store(e[i] + m, fma(static_cast<double>(k), by_k, load<Pack<8>>(constant.data() + m)));
+      for (int m = 0; m < k + 2; m += Lanes<Orders>::width) {
+        const Orders by_k = fma(static_cast<double>(k), load<Orders>(square.data() + m),
+                                load<Orders>(slope.data() + m));
+        store(e[i] + m, fma(static_cast<double>(k), by_k, load<Orders>(constant.data() + m)));
       }
     }
     std::array<Slopes, 2> known, more{};
