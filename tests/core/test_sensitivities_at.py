@@ -108,6 +108,21 @@ def test_between_the_steps_they_are_those_of_a_run_that_keeps_these_times(
         np.testing.assert_array_equal(alone, kept.sensitivities[20])
 
 
+@pytest.mark.parametrize(
+    ("method", "step", "within"),
+    [("dop853", 1e-3, 1e-12), ("dopri5", 1e-3, 1e-12), ("dop853", 0.25, 1e-4)],
+)
+def test_they_have_steps_of_their_own(method: str, step: float, within: float) -> None:
+    """A series serves hundreds of short steps of a run, and two or more serve a long one."""
+    slow = pc.Scene(links=[pc.Link(mass=1.0, length=10.0)] * 2)
+    how: Any = {"t_eval": [1.3, 6.0], "sensitivities": ["q0[1]", "qd0[2]", "gravity"]}
+    found = pc.simulate(slow, (0, 6), [0.5, 1.0], method=method, step=step, **how)
+    right = pc.simulate(slow, (0, 6), [0.5, 1.0], method="taylor", rtol=1e-14, atol=1e-16, **how)
+    assert found.sensitivities is not None
+    largest = np.abs(right.sensitivities).max()
+    np.testing.assert_allclose(found.sensitivities, right.sensitivities, 0, within * largest)
+
+
 def test_at_an_impact_they_are_those_after_it() -> None:
     sol = pc.simulate(BOUNCING, (0, 0.5), 0.5, sensitivities=NAMES)
     assert sol.sensitivities is not None

@@ -1,17 +1,17 @@
 /// \file
-/// The changes of a motion along one step, by the Taylor series of the motion on numbers with
-/// slopes along eight names at once (dynamics/series).
+/// The changes of a motion by its Taylor series on numbers with slopes along eight names at once
+/// (dynamics/series).
 ///
 /// The coefficients of a change are the slopes of the coefficients of the motion; those of two
-/// links have a recurrence of their own (double_pendulum_along_names.hpp). So the series from the
-/// state and its changes at the start of a step has the changes anywhere in the step, whichever
-/// method made the step. Its order follows from how fast the slopes fall: with N the largest of the
-/// last four at the end of the step, and M that of the four before, what is left out is taken as
-/// N (N/M)/(1 - N/M).
+/// links have a recurrence of their own (double_pendulum_along_names.hpp). A series from a state
+/// and its changes has the changes as far as it converges, whichever method makes the run: it may
+/// serve many steps, or end within one. Where it ends follows from how fast the slopes fall: with
+/// N the largest of the last four orders there, and M that of the four before, what is left out is
+/// taken as 2 N (N/M), where N/M is at most a half.
 ///
 /// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
-/// numbers. Cost: for two links, six times a step of the run, and two more for each further eight
-/// names; for a chain, some twelve for each eight.
+/// numbers; Jorba and Zou, A software package for the numerical integration of ODEs by means of
+/// high-order Taylor methods, Experimental Mathematics 14 (2005), for steps from the last orders.
 #pragma once
 
 #include <memory>
@@ -21,39 +21,40 @@
 
 namespace pendcore {
 
-class ChangesInCommon;
+class CoefficientsOfChanges;
 
 class ChangesBySeries {
  public:
-  ChangesBySeries();
+  /// The tolerance is the share of its size by which a series may miss a change.
+  explicit ChangesBySeries(double tolerance);
   ~ChangesBySeries();
 
-  /// Computes the series of a step of length h (s) from a state y and its changes, (2n, names),
-  /// each to a share of its size. Columns that are not finite are left so. Returns false where the
-  /// laws that are in force have no series, or the series does not converge.
-  bool expand(const VariationalEquations& equations, double t, const double* y, double h,
-              const Matrix& changes, double tolerance);
-  /// Writes the changes at a share of that step.
-  void evaluate(double share, Matrix& changes);
+  /// Takes the laws in force and the changes of a state y, (2n, names); those of names that are not
+  /// finite stay so. Returns false where the laws have no series.
+  bool start(const VariationalEquations& equations, double t, const double* y,
+             const Matrix& changes);
+  /// Computes the series from where they start, at a state y. Returns how far they reach, s,
+  /// forward or backward in time; 0 where none converges.
+  double expand(double t, const double* y, bool forward);
+  /// Writes the changes at a time since the start of the series, s.
+  void evaluate(double since, Matrix& changes);
+  /// Lets the next series start from there.
+  void move_start(double since);
 
  private:
   struct Part;
-  struct Convergence {
-    bool is_there;
-    int wanted_order;  ///< the lowest one with which the next step is likely to have it
-  };
 
   void take_laws(const VariationalEquations& equations);
-  void set_order(int order, Eigen::Index size);
-  Convergence look_at(Part& part, double tolerance) const;
+  void expand_parts(double t, const double* y, double sigma);
+  double share_at(double x) const;
 
+  double tolerance_;
   std::vector<Part> parts_;
-  std::unique_ptr<ChangesInCommon> common_;
+  std::unique_ptr<CoefficientsOfChanges> common_;
   std::vector<double> sums_;
-  int laws_ = 0;  ///< VariationalEquations::changes_of_laws() of the parts
-  int order_ = 0;
-  int wanted_order_ = 0;
-  double x_ = 0.0;  ///< the step in units of sigma
+  int laws_ = 0;        ///< VariationalEquations::changes_of_laws() of the parts
+  double reach_ = 0.0;  ///< s, of the last series; 0 if there is none
+  double per_sigma_ = 1.0;
 };
 
 }  // namespace pendcore

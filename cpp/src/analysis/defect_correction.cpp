@@ -172,7 +172,7 @@ void DefectCorrection::take_curve(const WatchedStep& step) {
   const std::size_t size = (curve.degree + 1) * curve.width;
   curve.powers.resize(2 * size);
   curve.angle_offset.resize(size);
-  on_this_processor<&set_curve>(step.rows, step.y.size(), step.h, &curve);
+  on_this_processor<&set_curve>(step.rows(), step.y.size(), step.h, &curve);
 }
 
 /// The neighbours go on side by side, so that a processor works on several of them at once.

@@ -160,12 +160,12 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
 std::vector<Saltation::NearMiss> Saltation::near_misses(const WatchedStep& step) {
   const double natural = equations_.equations().held_joints->natural_speed();
   polynomial_.resize(step.degree + 1);
+  const double* const rows = step.rows();
   std::vector<NearMiss> found;
   std::vector<TurningPoint> turning_points;
   for (std::size_t i = 0; i < guards_.size(); ++i) {
     const JointGuard& guard = guards_[i];
-    guard.polynomial(step.rows, step.degree, static_cast<int>(step.y.size()), n_,
-                     polynomial_.data());
+    guard.polynomial(rows, step.degree, static_cast<int>(step.y.size()), n_, polynomial_.data());
     const double near = guard.is_on_rate() ? little * natural : little;
     double least = polynomial_[0];  // a lower bound
     for (int k = 1; k <= step.degree; ++k) least -= std::abs(polynomial_[k]);

@@ -31,6 +31,9 @@ struct Sensitivities::Variation {
 
   void start(double t, std::span<const double> y);
   void take(const WatchedStep& step);
+  bool reaches(const WatchedStep& step, double share, double& from);
+  void catch_up();
+  void finish();
   void change_laws(const WatchedChange& change);
   void refuse_from(double t, const std::string& why);
   bool has_converged(double h);
@@ -48,11 +51,17 @@ struct Sensitivities::Variation {
 
   VariationalEquations equations;
   std::optional<Saltation> saltation{};  ///< of a scene whose laws change
-  ChangesBySeries series;
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
   double t_start = 0.0;
   double tolerance = least_tolerance;
+
+  // The series that is under way: it may serve many steps.
+  std::optional<ChangesBySeries> series{};
+  bool has_series = false;
+  bool is_behind = false;  ///< whether the changes at t_start are still to be computed
+  double since = 0.0;      ///< s, from where the series begins to t_start
+  double reach = 0.0;      ///< s, from there to where it ends, negative in a backward run
 
   // The part of a step that is under way.
   int points_at_once = 8;
@@ -75,7 +84,7 @@ struct Sensitivities::Variation {
 };
 
 void Sensitivities::Variation::keep(double t) {
-  if (keeps_end) values.clear();
+  if (keeps_end) return;
   values.insert(values.end(), now.data(), now.data() + now.size());
   t_kept = t;
 }
@@ -84,6 +93,7 @@ void Sensitivities::Variation::keep(double t) {
 void Sensitivities::Variation::refuse_from(double t, const std::string& why) {
   refusal = "sensitivities: none after t = " + text(t) + " s: " + why;
   is_over = true;
+  has_series = is_behind = false;
   now.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -126,7 +136,7 @@ void Sensitivities::Variation::advance(const WatchedStep& step, double from, dou
   states.resize(static_cast<std::size_t>(s) * size);
   for (int i = 0; i < s; ++i) thetas[i] = from + points.theta[i] * (to - from);
   static const auto sample = fastest<&sample_rows>();
-  sample(step.rows, {}, 1.0, thetas.data(), s, states.data(), size, step.degree);
+  sample(step.rows(), {}, 1.0, thetas.data(), s, states.data(), size, step.degree);
 
   const int width = padded_names();
   const int row = (n * s + 3) / 4 * 4 + width;
@@ -193,48 +203,97 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
   }
   has_started = true;
   t_start = t;
+  series.emplace(tolerance / 3.0);
   equations.choose_laws(t, y.data());
   const bool is_asked_for = !t_eval.empty() && t_eval.front() == t;
   if (is_asked_for) ++next_time;
   if (!keeps_times || is_asked_for) keep(t);
 }
 
+/// Whether series reach a share of a step, one after another, each from where the last one ends.
+/// Where there is none, or the next would be too short, the changes are those at the share `from`.
+bool Sensitivities::Variation::reaches(const WatchedStep& step, double share, double& from) {
+  constexpr double least_part = 1.0 / 8.0;  // of a step; below, collocation takes less time
+  constexpr double hardly = 1e-9;           // of a step
+  for (;;) {
+    const double end = has_series ? (reach - since) / step.h : 0.0;
+    if (has_series && end >= share - hardly) return true;
+    from = std::max(end, 0.0);
+    states.resize(step.y.size());
+    static const auto sample = fastest<&sample_rows>();
+    sample(step.rows(), {}, 1.0, &from, 1, states.data(), static_cast<int>(step.y.size()),
+           step.degree);
+    const double t = t_start + from * step.h;
+    if (has_series) {
+      series->move_start(since + from * step.h);
+    } else if (!series->start(equations, t, states.data(), now)) {
+      return false;
+    }
+    const double span = series->expand(t, states.data(), step.h > 0.0);
+    has_series = span >= least_part * std::abs(step.h);
+    if (!has_series) {
+      series->evaluate(0.0, now);
+      return false;
+    }
+    reach = std::copysign(span, step.h);
+    since = -from * step.h;
+  }
+}
+/// Computes the changes where the run is.
+void Sensitivities::Variation::catch_up() {
+  if (is_behind) series->evaluate(since, now);
+  is_behind = false;
+}
+void Sensitivities::Variation::finish() {
+  if (!keeps_end) return;
+  catch_up();
+  values.assign(now.data(), now.data() + now.size());
+}
+
 void Sensitivities::Variation::take(const WatchedStep& step) {
   if (step.share == 0.0) return;  // an event at the start of a step
   cuts_left = most_cuts_of_step;
-  const bool by_series =
-      !is_over && series.expand(equations, t_start, step.rows, step.h, now, tolerance);
   std::vector<Saltation::NearMiss> misses;
   std::size_t next_miss = 0;
   if (saltation && !is_over) misses = saltation->near_misses(step);
+  bool by_series = true;
+  double from = 0.0;  // where the changes are, if they go on by collocation
+  const auto series_reach = [&](double to) {
+    return by_series = by_series && reaches(step, to, from);
+  };
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
-  const auto advance_alone = [&](double from, double to) {
-    if (by_series) {
-      series.evaluate(to, now);
-    } else {
+  const auto go_straight_to = [&](double to) {
+    if (series_reach(to)) {
+      series->evaluate(since + to * step.h, now);
+    } else if (to > from) {
       advance(step, from, to, 0);
+      from = to;
     }
   };
-  const auto advance_to = [&](double from, double to) {
+  const auto pass_misses = [&](double to) {
     for (; !is_over && next_miss < misses.size() && misses[next_miss].share < to; ++next_miss) {
       const Saltation::NearMiss& miss = misses[next_miss];
-      if (miss.share > from) advance_alone(from, miss.share);
-      from = std::max(from, miss.share);
+      go_straight_to(miss.share);
       const std::string why = is_over ? "" : saltation->why_none(miss, now);
       if (!why.empty()) refuse_from(t_start + miss.share * step.h, why);
     }
-    if (!is_over) advance_alone(from, to);
   };
-  double from = 0.0;
   for (; std::isfinite(next_share(step)); ++next_time) {
     const double to = next_share(step);
-    advance_to(from, to);
+    pass_misses(to);
+    if (!is_over) go_straight_to(to);
     keep(t_eval[next_time]);
-    from = to;
   }
-  if (from != step.share) advance_to(from, step.share);
+  pass_misses(step.share);
+  if (!is_over) {
+    is_behind = series_reach(step.share);
+    if (!is_behind) go_straight_to(step.share);
+  }
+  since += step.share * step.h;
   t_start = step.t;
-  if (!keeps_times) keep(step.t);
+  if (keeps_times || keeps_end) return;
+  catch_up();
+  keep(step.t);
 }
 
 /// The run keeps a state after a jump beside the one before it, where it keeps its steps; otherwise
@@ -242,6 +301,8 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
 void Sensitivities::Variation::change_laws(const WatchedChange& change) {
   if (!saltation) saltation.emplace(equations);
   sizes_elsewhere.resize(0);
+  catch_up();
+  has_series = false;
   if (!is_over) {
     try {
       if (change.at_start) {
@@ -258,7 +319,7 @@ void Sensitivities::Variation::change_laws(const WatchedChange& change) {
   }
   const bool keeps_steps = !keeps_end && !keeps_times;
   if (t_kept != change.t && !(keeps_steps && change.jumped)) return;
-  if (!keeps_end && !(keeps_steps && change.jumped)) take_back_last();
+  if (!(keeps_steps && change.jumped)) take_back_last();
   keep(change.t);
 }
 
@@ -283,7 +344,11 @@ void Sensitivities::steps(const WatchedStep& step) { variation_->take(step); }
 void Sensitivities::changes(const WatchedChange& change) { variation_->change_laws(change); }
 
 const std::string& Sensitivities::refusal() const { return variation_->refusal; }
-const std::vector<double>& Sensitivities::values() const { return variation_->values; }
+const std::vector<double>& Sensitivities::values() const {
+  const FloatingPointEnvironment ieee;
+  variation_->finish();
+  return variation_->values;
+}
 std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * variation_->n); }
 std::size_t Sensitivities::names() const {
   return static_cast<std::size_t>(variation_->now.cols());

@@ -2,16 +2,16 @@
 /// How a run changes with its start and with parameters of its scene: the variational equations
 /// (variational_equations.hpp) along the run, step by step.
 ///
-/// Where the laws in force have a Taylor series, each step of the run is one on numbers with slopes
-/// (changes_by_series.hpp). Where they have none, or it does not converge, the step is a linear
-/// system: d(dqd)/dt is the polynomial that holds at the points of a Gauss quadrature
-/// (gauss_collocation.hpp), along the run's own dense output. A step in which the polynomial has
-/// not converged is halved, again and again at a kink; where it never converges, there are no
-/// derivatives from there on (NaN). Where laws change, the changes go on by their saltation
-/// (saltation.hpp), or are refused.
+/// Where the laws in force have a Taylor series, the changes go on by series of numbers with slopes
+/// (changes_by_series.hpp), in steps of their own. Where they have none, or where a step of the run
+/// would take many, that step is a linear system: d(dqd)/dt is the polynomial that holds at the
+/// points of a Gauss quadrature (gauss_collocation.hpp), along the run's own dense output. A step
+/// in which the polynomial has not converged is halved, again and again at a kink; where it never
+/// converges, there are no derivatives from there on (NaN). Where laws change, the changes go on by
+/// their saltation (saltation.hpp), or are refused.
 ///
 /// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), I.14, II.7.
-/// Cost: for each step, that of the series; or s Jacobians, O(n^3 s^3), and for each parameter s
+/// Cost: that of the series; or for each step s Jacobians, O(n^3 s^3), and for each parameter s
 /// inverse dynamics on dual numbers.
 #pragma once
 

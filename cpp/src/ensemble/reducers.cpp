@@ -17,8 +17,9 @@ void Extremes::steps(const WatchedStep& step) {
   const std::size_t columns = step.y.size();
   polynomial_.resize(static_cast<std::size_t>(step.degree) + 1);
   bounds_.resize(polynomial_.size());
+  const double* const rows = step.rows();
   for (std::size_t i = 0; i < least_.size(); ++i) {
-    const double* const c = step.rows + i;
+    const double* const c = rows + i;
     double reach = 0.0;
     for (int k = 1; k <= step.degree; ++k) reach += std::abs(c[k * columns]);
     const auto take = [&](double value) {

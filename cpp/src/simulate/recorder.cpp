@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "scene/effects_of_scene.hpp"
@@ -38,7 +39,9 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
   StepEnd end;
   // This comes before anything is kept: it may evaluate right-hand sides, and a user's function may
   // throw.
-  if (finder_ || keeps_polynomials_ || watch_asks_for_polynomials_) interpolate(output, h);
+  bool is_interpolated =
+      finder_ || keeps_polynomials_ || (watch_asks_for_polynomials_ && may_throw_);
+  if (is_interpolated) interpolate(output, h);
   if (finder_) {
     end = finder_->look(output, polynomial_.data(), t_old, h, t_new);
     if (end.has_too_many_turns()) return end;
@@ -54,10 +57,15 @@ StepEnd Recorder::step_accepted(StepOutput& output, const TwoDouble& t_old, doub
   if (watch_ != nullptr) {
     shown_.resize(dimension_);
     get_end(shown_.data());
+    const auto rows = [&] {
+      if (!is_interpolated) interpolate(output, h);
+      is_interpolated = true;
+      return polynomial_.data();
+    };
     watch_->steps({.t = t_end,
                    .h = h,
                    .y = shown_,
-                   .rows = polynomial_.data(),
+                   .rows = std::cref(rows),
                    .degree = static_cast<int>(degree_),
                    .share = end.is_within() ? end.theta : 1.0});
   }

@@ -2,6 +2,7 @@
 /// What looks on while a run is made, step by step, and never changes it.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct WatchedStep {
   double t;                   ///< s, at its end
   double h;                   ///< s, from theta = 0 to 1; negative in a backward run
   std::span<const double> y;  ///< the state there: angles, rates, accounts of the ledger
-  /// The dense output in powers of theta, (degree + 1, size of y), if the watch asks for it.
-  const double* rows;
+  /// Returns the dense output in powers of theta, (degree + 1, size of y), to watches that ask for
+  /// it. Some methods take stages of their own for it.
+  std::function<const double*()> rows;
   int degree;
   double share;  ///< of the step: theta at its end, 1 unless an event ends it
 };
