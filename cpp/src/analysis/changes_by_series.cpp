@@ -12,6 +12,7 @@
 #include "arithmetic/instruction_set.hpp"
 #include "dynamics/series/chain_series_recurrence.hpp"
 #include "dynamics/series/double_pendulum_along_names.hpp"
+#include "integrate/horner.hpp"
 #include "integrate/taylor/taylor_step.hpp"
 #include "scene/effects_of_scene.hpp"
 
@@ -58,40 +59,43 @@ PENDCORE_INLINE Slopes sum_of_slopes(const AlongNames* rows, int size, int last,
   return sum;
 }
 
-/// What series say at a time x, the least of all names: N is the largest slope that the last four
-/// orders have there, M that of the four before (by symmetry three of four may vanish), and S the
-/// largest change until halfway there, as a series may have any size beyond its reach.
-struct Reach {
-  double by_size = std::numeric_limits<double>::infinity();   ///< (S/N)(M/N)
-  double by_decay = std::numeric_limits<double>::infinity();  ///< M/N
+/// How slopes fall at a time x, the least of all names: N is the sum of the slopes that the last
+/// four orders have there, M that of the four before (by symmetry three of four may vanish), and S
+/// the largest change until halfway there, as a series may have any size beyond its reach.
+struct Decay {
+  double by_size = std::numeric_limits<double>::infinity();    ///< (S/N)(M/N)
+  double by_orders = std::numeric_limits<double>::infinity();  ///< M/N
 };
-PENDCORE_INLINE void find_reach(const AlongNames* rows, int size, double x, Reach* reach) {
+PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, const bool* are_numbers,
+                                Decay* decay) {
   double power = 1.0;  // x^(order - 7)
   for (int k = 7; k < order; ++k) power *= x;
-  const auto largest_of_four = [&](int begin) __attribute__((always_inline)) {
-    Slopes found{};
+  const auto sum_of_four = [&](int begin) __attribute__((always_inline)) {
+    Slopes sum{};
     for (int k = begin; k < begin + 4; ++k, power *= x) {
-      for (int i = 0; i < size; ++i) {
-        found = larger(found, absolute(Slopes(power * rows[k * size + i].slope)));
-      }
+      for (int i = 0; i < size; ++i) sum = sum + absolute(Slopes(power * rows[k * size + i].slope));
     }
-    return found;
+    return sum;
   };
   Slopes change{};
   for (int i = 0; i < size; ++i) {
     const Slopes halfway = sum_of_slopes(rows, size, order / 2, 0.5 * x, i);
     change = larger(change, larger(absolute(rows[i].slope), absolute(halfway)));
   }
-  const Slopes before = largest_of_four(order - 7);
-  const Slopes last = largest_of_four(order - 3);
+  const Slopes before = sum_of_four(order - 7);
+  const Slopes last = sum_of_four(order - 3);
   for (int k = 0; k < names_at_once; ++k) {
     constexpr double largest_size = 1e300;  // beyond, sums may overflow
-    const bool is_finite = change[k] < largest_size;
-    if (is_finite && last[k] <= 0.1 * epsilon * change[k]) continue;
-    const double decay = is_finite ? before[k] / last[k] : 0.0;
-    const double by_size = change[k] / last[k] * decay;
-    reach->by_size = by_size > 0.0 ? std::min(reach->by_size, by_size) : 0.0;
-    reach->by_decay = decay > 0.0 ? std::min(reach->by_decay, decay) : 0.0;
+    const bool is_finite = change[k] < largest_size && last[k] < largest_size;  // false for NaN
+    if (!are_numbers[k] || (is_finite && before[k] + last[k] == 0.0)) continue;
+    // What rounding leaves does not fall; it is taken for slopes that fall by 16.
+    const double rounding = 0.1 * epsilon * change[k];
+    const bool is_rounding = last[k] <= rounding;
+    const double N = is_rounding ? rounding : last[k];
+    const double M = is_rounding ? std::max(before[k], 16.0 * rounding) : before[k];
+    const double by_size = is_finite ? (change[k] / N) * (M / N) : 0.0;
+    decay->by_size = by_size > 0.0 ? std::min(decay->by_size, by_size) : 0.0;
+    decay->by_orders = is_finite ? std::min(decay->by_orders, M / N) : 0.0;
   }
 }
 
@@ -99,6 +103,16 @@ PENDCORE_INLINE void sum_slopes(const AlongNames* rows, int size, double x, doub
   for (int i = 0; i < size; ++i) {
     store(sums + i * names_at_once, sum_of_slopes(rows, size, x == 0.0 ? 0 : order, x, i));
   }
+}
+PENDCORE_INLINE void sum_values(const AlongNames* rows, int size, double x, double* sums) {
+  for (int i = 0; i < size; ++i) {
+    sums[i] = rows[order * size + i].value;
+    for (int k = order; k-- > 0;) sums[i] = fma(x, sums[i], rows[k * size + i].value);
+  }
+}
+/// The same of the states of two links.
+PENDCORE_INLINE void sum_states(const double* states, double x, double* sums) {
+  store(sums, horner<Pack<4>>(states, order, 4, x));
 }
 /// Puts the slopes at x into row 0.
 PENDCORE_INLINE void move_to(AlongNames* rows, int size, double x) {
@@ -162,7 +176,7 @@ struct ChangesBySeries::Part {
   }
 };
 
-/// Expands all parts, those of two links two at a time.
+/// Expands all parts, which are of one kind: those of two links two at a time.
 void ChangesBySeries::expand_parts(double t, const double* y, double sigma) {
   static const auto of_chain = fastest<&expand_series, wide_sets>();
   static const auto find_common = fastest<&find_common_series, wide_sets>();
@@ -211,17 +225,12 @@ void ChangesBySeries::take_laws(const VariationalEquations& equations) {
   }
 }
 
-bool ChangesBySeries::start(const VariationalEquations& equations, double t, const double* y,
-                            const Matrix& changes) {
+bool ChangesBySeries::start(const VariationalEquations& equations, const Matrix& changes,
+                            double first_reach) {
   if (laws_ != equations.changes_of_laws()) take_laws(equations);
   for (Part& part : parts_) part.start(changes);
-  if (parts_.empty()) return false;
-  if (reach_ == 0.0) {
-    const Vector rates = equations.rates(t, y);
-    reach_ =
-        taylor_detail::first_sigma(taylor_detail::squared_rate(rates.data(), equations.links()));
-  }
-  return true;
+  if (reach_ == 0.0) reach_ = first_reach;
+  return !parts_.empty();
 }
 
 double ChangesBySeries::expand(double t, const double* y, bool forward) {
@@ -242,15 +251,26 @@ double ChangesBySeries::expand(double t, const double* y, bool forward) {
   return 0.0;
 }
 
-/// How far the series reach, as a share of x, where they are looked at.
+/// How far the series reach, as a share of x, where they are looked at. At a share z of it, what is
+/// left out is 2 N (N/M) z^(order + 4), and N/M is z^4 times what it is at x.
 double ChangesBySeries::share_at(double x) const {
-  static const auto find = fastest<&find_reach, wide_sets>();
-  Reach reach;
-  for (const Part& part : parts_) find(part.rows.data(), part.size(), x, &reach);
-  const double of_four = std::sqrt(std::sqrt(0.5 * reach.by_decay));
-  if (!(of_four > 0.0)) return 0.0;
-  const double log2_room = coarse_log2(0.5 * tolerance_ * reach.by_size);
-  return std::min(of_four, coarse_exp2(log2_room / (order + 4)));
+  static const auto find = fastest<&find_decay, wide_sets>();
+  Decay decay;
+  for (const Part& part : parts_) {
+    find(part.rows.data(), part.size(), x, part.are_numbers.data(), &decay);
+  }
+  const double where_half = std::sqrt(std::sqrt(0.5 * decay.by_orders));
+  if (!(where_half > 0.0)) return 0.0;
+  const double log2_room = coarse_log2(0.5 * tolerance_ * decay.by_size);
+  return std::min(where_half, coarse_exp2(log2_room / (order + 4)));
+}
+
+void ChangesBySeries::state(double since, double* y) const {
+  static const auto of_chain = fastest<&sum_values, wide_sets>();
+  static const auto of_pendulum = fastest<&sum_states, wide_sets>();
+  const Part& part = parts_.front();
+  if (part.pendulum() != nullptr) return of_pendulum(common_->states, since * per_sigma_, y);
+  of_chain(part.rows.data(), part.size(), since * per_sigma_, y);
 }
 
 void ChangesBySeries::move_start(double since) {

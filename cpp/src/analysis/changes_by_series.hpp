@@ -29,15 +29,17 @@ class ChangesBySeries {
   explicit ChangesBySeries(double tolerance);
   ~ChangesBySeries();
 
-  /// Takes the laws in force and the changes of a state y, (2n, names); those of names that are not
-  /// finite stay so. Returns false where the laws have no series.
-  bool start(const VariationalEquations& equations, double t, const double* y,
-             const Matrix& changes);
+  /// Takes the laws in force and the changes at the start, (2n, names); those of names that are not
+  /// finite stay so. Returns false where the laws have no series. The first series is looked at
+  /// after `first_reach`, s, others where the last one ended.
+  bool start(const VariationalEquations& equations, const Matrix& changes, double first_reach);
   /// Computes the series from where they start, at a state y. Returns how far they reach, s,
   /// forward or backward in time; 0 where none converges.
   double expand(double t, const double* y, bool forward);
   /// Writes the changes at a time since the start of the series, s.
   void evaluate(double since, Matrix& changes);
+  /// Writes the state there, of the motion that starts where the series does.
+  void state(double since, double* y) const;
   /// Lets the next series start from there.
   void move_start(double since);
 

@@ -31,7 +31,8 @@ struct Sensitivities::Variation {
 
   void start(double t, std::span<const double> y);
   void take(const WatchedStep& step);
-  bool reaches(const WatchedStep& step, double share, double& from);
+  void find_state(const WatchedStep& step, double share);
+  bool follow_by_series(const WatchedStep& step, double share, double& from);
   void catch_up();
   void finish();
   void change_laws(const WatchedChange& change);
@@ -54,6 +55,7 @@ struct Sensitivities::Variation {
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
   double t_start = 0.0;
+  std::vector<double> state{};  ///< of the run at t_start
   double tolerance = least_tolerance;
 
   // The series that is under way: it may serve many steps.
@@ -203,6 +205,7 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
   }
   has_started = true;
   t_start = t;
+  state.assign(y.begin(), y.end());
   series.emplace(tolerance / 3.0);
   equations.choose_laws(t, y.data());
   const bool is_asked_for = !t_eval.empty() && t_eval.front() == t;
@@ -210,26 +213,41 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
   if (!keeps_times || is_asked_for) keep(t);
 }
 
-/// Whether series reach a share of a step, one after another, each from where the last one ends.
-/// Where there is none, or the next would be too short, the changes are those at the share `from`.
-bool Sensitivities::Variation::reaches(const WatchedStep& step, double share, double& from) {
+/// The run's state at a share of a step. A series from before the step has it but for an error that
+/// is known at the start of the step: closer than the dense output of most methods.
+void Sensitivities::Variation::find_state(const WatchedStep& step, double share) {
+  const auto size = static_cast<int>(step.y.size());
+  states.resize(step.y.size());
+  if (share == 0.0) {
+    states = state;
+  } else if (has_series && since / step.h >= 0.0) {
+    std::vector<double> at_start(step.y.size());
+    series->state(since, at_start.data());
+    series->state(since + share * step.h, states.data());
+    for (int i = 0; i < 2 * n; ++i) states[i] += state[i] - at_start[i];
+  } else {
+    static const auto sample = fastest<&sample_rows>();
+    sample(step.rows(), {}, 1.0, &share, 1, states.data(), size, step.degree);
+  }
+}
+/// Goes on by series, one after another, each from where the last one ends, until one reaches a
+/// share of a step. Returns whether one does. If there is none, or the next would be too short, the
+/// changes are those at the share `from`.
+bool Sensitivities::Variation::follow_by_series(const WatchedStep& step, double share,
+                                                double& from) {
   constexpr double least_part = 1.0 / 8.0;  // of a step; below, collocation takes less time
-  constexpr double hardly = 1e-9;           // of a step
+  constexpr double rounding = 1e-9;         // of a step
   for (;;) {
     const double end = has_series ? (reach - since) / step.h : 0.0;
-    if (has_series && end >= share - hardly) return true;
+    if (has_series && end >= share - rounding) return true;
     from = std::max(end, 0.0);
-    states.resize(step.y.size());
-    static const auto sample = fastest<&sample_rows>();
-    sample(step.rows(), {}, 1.0, &from, 1, states.data(), static_cast<int>(step.y.size()),
-           step.degree);
-    const double t = t_start + from * step.h;
+    find_state(step, from);
     if (has_series) {
       series->move_start(since + from * step.h);
-    } else if (!series->start(equations, t, states.data(), now)) {
+    } else if (!series->start(equations, now, 2.0 * std::abs(step.h))) {
       return false;
     }
-    const double span = series->expand(t, states.data(), step.h > 0.0);
+    const double span = series->expand(t_start + from * step.h, states.data(), step.h > 0.0);
     has_series = span >= least_part * std::abs(step.h);
     if (!has_series) {
       series->evaluate(0.0, now);
@@ -258,12 +276,12 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   if (saltation && !is_over) misses = saltation->near_misses(step);
   bool by_series = true;
   double from = 0.0;  // where the changes are, if they go on by collocation
-  const auto series_reach = [&](double to) {
-    return by_series = by_series && reaches(step, to, from);
+  const auto has_followed = [&](double to) {
+    return by_series = by_series && follow_by_series(step, to, from);
   };
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
   const auto go_straight_to = [&](double to) {
-    if (series_reach(to)) {
+    if (has_followed(to)) {
       series->evaluate(since + to * step.h, now);
     } else if (to > from) {
       advance(step, from, to, 0);
@@ -286,11 +304,12 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   }
   pass_misses(step.share);
   if (!is_over) {
-    is_behind = series_reach(step.share);
+    is_behind = has_followed(step.share);
     if (!is_behind) go_straight_to(step.share);
   }
   since += step.share * step.h;
   t_start = step.t;
+  state.assign(step.y.begin(), step.y.end());
   if (keeps_times || keeps_end) return;
   catch_up();
   keep(step.t);
@@ -303,6 +322,7 @@ void Sensitivities::Variation::change_laws(const WatchedChange& change) {
   sizes_elsewhere.resize(0);
   catch_up();
   has_series = false;
+  std::ranges::copy(change.after, state.begin());
   if (!is_over) {
     try {
       if (change.at_start) {

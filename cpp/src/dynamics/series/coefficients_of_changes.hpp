@@ -55,6 +55,7 @@ class CoefficientsOfChanges {
   PENDCORE_INLINE void find(const OfLinks& constants, const double* y, double sigma, int order,
                             Torque& torque);
 
+  double states[4 * (highest_order + 1)];  ///< (q_1, q_2, qd_1, qd_2) of each order
   PaddedSeries rate[2];
   Series angle[2], acceleration[2];  ///< in powers of sigma
   Series cosine[2];                  ///< sigma^2 cos q
@@ -86,7 +87,6 @@ class CoefficientsOfChanges {
   PENDCORE_INLINE static Orders product(const PaddedSeries& a, const PaddedSeries& b, int first);
   PENDCORE_INLINE void find_products(double cos, double sin, int order);
 
-  double coefficients_[4 * (highest_order + 1)];
   PaddedSeries along_[2], across_[2];        ///< n of each link, along its axes at the start
   PaddedSeries other_along_, other_across_;  ///< of the second one, along those of the first
   PaddedSeries cos_, sin_;                   ///< C and S of the first link
@@ -133,8 +133,8 @@ template <class OfLinks, class Torque>
 PENDCORE_INLINE void CoefficientsOfChanges::find(const OfLinks& constants, const double* y,
                                                  double sigma, int order, Torque& torque) {
   DoublePendulumOrders<double>::Last last;
-  DoublePendulumOrders<double> orders(constants, y, sigma, torque, coefficients_, last);
-  complete(orders, order, torque, coefficients_, last);
+  DoublePendulumOrders<double> orders(constants, y, sigma, torque, states, last);
+  complete(orders, order, torque, states, last);
   const Pair start = load<Pair>(y);
   Pair s0, c0;
   sine_cosine(start, s0, c0);
