@@ -14,6 +14,7 @@ E, V = pc.effects, pc.events
 ROD = pc.Link(mass=1.0, length=1.0)
 TEXTBOOK = pc.Scene.textbook()
 STOP = E.JointStop(joint=1, range=(-9, 1.2), restitution=0.5)
+ROD_ALONE = pc.Scene(links=[ROD], gravity=0.0)
 BOUNCING = pc.Scene(links=[ROD], effects=[STOP])
 RUBBING = pc.Scene(links=[ROD], effects=[E.DryJointFriction(joint=1, coulomb=2.0)])
 DRAGGED = TEXTBOOK.replace(
@@ -121,6 +122,29 @@ def test_they_have_steps_of_their_own(method: str, step: float, within: float) -
     assert found.sensitivities is not None
     largest = np.abs(right.sensitivities).max()
     np.testing.assert_allclose(found.sensitivities, right.sensitivities, 0, within * largest)
+
+
+@pytest.mark.parametrize("method", ["taylor", "dop853", "dopri5"])
+def test_a_spring_has_those_of_its_cosine(method: str) -> None:
+    """However fast the rod begins: of a linear motion the derivatives do not know."""
+    spring = ROD_ALONE.replace(effects=[E.TorsionalSpring(joint=1, stiffness=1.0 / 3.0)])
+    t = np.linspace(0, 20, 201)
+    for rate in (0.06, 0.838, 5.9, 200.0):
+        how: Any = {"rtol": 1e-12, "atol": 1e-15, "t_eval": t, "sensitivities": ["q0[1]"]}
+        found = pc.simulate(spring, (0, 20), 0.0, rate, method=method, **how).sensitivities
+        np.testing.assert_allclose(found[:, 0, 0], np.cos(t), rtol=0, atol=2e-12)
+
+
+@pytest.mark.parametrize("step", [1e-4, 1e-3])
+def test_after_a_release_they_go_on_from_rest(step: float) -> None:
+    """The changes are zero there, and so are the rates: neither says how long a series may be."""
+    shaken = E.DrivenPivot(x=E.Sinusoid(0.29, 2.75), y=E.Sinusoid(0.178, 11.7, 0.4))
+    stop = E.JointStop(joint=1, range=(-1.2, 0.9), restitution=0.0)
+    scene = pc.Scene(links=[pc.Link(mass=0.45, length=1.05)], effects=[stop, shaken])
+    how: Any = {"sensitivities": ["link[1].length", "link[1].center"], "store": "end"}
+    found = pc.simulate(scene, (0, 6), 0.3, 1.0, method="dop853", step=step, **how)
+    right = pc.simulate(scene, (0, 6), 0.3, 1.0, method="taylor", rtol=1e-12, atol=1e-15, **how)
+    np.testing.assert_allclose(found.sensitivities, right.sensitivities, rtol=1e-5)
 
 
 def test_at_an_impact_they_are_those_after_it() -> None:

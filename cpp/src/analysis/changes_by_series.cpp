@@ -65,6 +65,7 @@ PENDCORE_INLINE Slopes sum_of_slopes(const AlongNames* rows, int size, int last,
 struct Decay {
   double by_size = std::numeric_limits<double>::infinity();    ///< (S/N)(M/N)
   double by_orders = std::numeric_limits<double>::infinity();  ///< M/N
+  bool is_lost = false;  ///< whether N is rounding for a name: x says little, as it is too near
 };
 PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, const bool* are_numbers,
                                 Decay* decay) {
@@ -88,15 +89,26 @@ PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, cons
     constexpr double largest_size = 1e300;  // beyond, sums may overflow
     const bool is_finite = change[k] < largest_size && last[k] < largest_size;  // false for NaN
     if (!are_numbers[k] || (is_finite && before[k] + last[k] == 0.0)) continue;
-    // What rounding leaves does not fall; it is taken for slopes that fall by 16.
     const double rounding = 0.1 * epsilon * change[k];
-    const bool is_rounding = last[k] <= rounding;
-    const double N = is_rounding ? rounding : last[k];
-    const double M = is_rounding ? std::max(before[k], 16.0 * rounding) : before[k];
-    const double by_size = is_finite ? (change[k] / N) * (M / N) : 0.0;
+    if (is_finite && last[k] <= rounding) {
+      decay->is_lost = true;
+      decay->by_size = std::min(decay->by_size, change[k] / rounding);
+      continue;
+    }
+    const double by_orders = is_finite ? before[k] / last[k] : 0.0;
+    const double by_size = change[k] / last[k] * by_orders;
     decay->by_size = by_size > 0.0 ? std::min(decay->by_size, by_size) : 0.0;
-    decay->by_orders = is_finite ? std::min(decay->by_orders, M / N) : 0.0;
+    decay->by_orders = by_orders > 0.0 ? std::min(decay->by_orders, by_orders) : 0.0;
   }
+}
+
+/// How far series reach, as a share of x. At a share z, what is left out is 2 N (N/M) z^(order + 4),
+/// and N/M is z^4 times what it is at x.
+double share_of_reach(const Decay& decay, double tolerance) {
+  const double where_half = std::sqrt(std::sqrt(0.5 * decay.by_orders));
+  if (!(where_half > 0.0)) return 0.0;
+  const double log2_room = coarse_log2(0.5 * tolerance * decay.by_size);
+  return std::min(where_half, coarse_exp2(log2_room / (order + 4)));
 }
 
 PENDCORE_INLINE void sum_slopes(const AlongNames* rows, int size, double x, double* sums) {
@@ -234,35 +246,35 @@ bool ChangesBySeries::start(const VariationalEquations& equations, const Matrix&
 }
 
 double ChangesBySeries::expand(double t, const double* y, bool forward) {
-  constexpr int most_tries = 4;
+  static const auto find = fastest<&find_decay, wide_sets>();
+  constexpr int most_tries = 8;
   constexpr double near_enough = 0.5;  // to where the series was looked at
+  constexpr double farther = 4.0;      // at most
   for (Part& part : parts_) {
     for (int i = 0; i < part.size(); ++i) part.rows[i].value = y[i];
   }
+  bool was_too_far = false;
   for (int tries = 0; tries < most_tries; ++tries) {
     const double sigma = taylor_detail::power_of_two_below(reach_);
     per_sigma_ = inverse_of_power_of_two(sigma);
     expand_parts(t, y, sigma);
-    const double share = std::min(4.0, share_at((forward ? reach_ : -reach_) * per_sigma_));
-    reach_ *= std::max(share, 0x1p-8);
-    if (share >= near_enough) return reach_;
+    Decay decay;
+    for (const Part& part : parts_) {
+      find(part.rows.data(), part.size(), (forward ? reach_ : -reach_) * per_sigma_,
+           part.are_numbers.data(), &decay);
+    }
+    const double share = std::min(farther, share_of_reach(decay, tolerance_));
+    if (share < near_enough) {
+      was_too_far = true;
+      reach_ *= std::max(share, 0x1p-8);
+    } else if (decay.is_lost && !was_too_far && tries + 1 < most_tries) {
+      reach_ *= farther;
+    } else {
+      return reach_ *= share;
+    }
   }
   reach_ = 0.0;
   return 0.0;
-}
-
-/// How far the series reach, as a share of x, where they are looked at. At a share z of it, what is
-/// left out is 2 N (N/M) z^(order + 4), and N/M is z^4 times what it is at x.
-double ChangesBySeries::share_at(double x) const {
-  static const auto find = fastest<&find_decay, wide_sets>();
-  Decay decay;
-  for (const Part& part : parts_) {
-    find(part.rows.data(), part.size(), x, part.are_numbers.data(), &decay);
-  }
-  const double where_half = std::sqrt(std::sqrt(0.5 * decay.by_orders));
-  if (!(where_half > 0.0)) return 0.0;
-  const double log2_room = coarse_log2(0.5 * tolerance_ * decay.by_size);
-  return std::min(where_half, coarse_exp2(log2_room / (order + 4)));
 }
 
 void ChangesBySeries::state(double since, double* y) const {

@@ -7,7 +7,8 @@
 /// and its changes has the changes as far as it converges, whichever method makes the run: it may
 /// serve many steps, or end within one. Where it ends follows from how fast the slopes fall: with
 /// N the largest of the last four orders there, and M that of the four before, what is left out is
-/// taken as 2 N (N/M), where N/M is at most a half.
+/// taken as 2 N (N/M), where N/M is at most a half. Where N is rounding, the series is looked at
+/// farther on.
 ///
 /// Source: Griewank and Walther, Evaluating Derivatives (2008), chapter 13, for series on dual
 /// numbers; Jorba and Zou, A software package for the numerical integration of ODEs by means of
@@ -48,7 +49,6 @@ class ChangesBySeries {
 
   void take_laws(const VariationalEquations& equations);
   void expand_parts(double t, const double* y, double sigma);
-  double share_at(double x) const;
 
   double tolerance_;
   std::vector<Part> parts_;

@@ -41,7 +41,8 @@ class Sensitivities final : public KeepingWatch {
   void jumps(double /*t*/, std::span<const double> /*y*/) override {}
   void changes(const WatchedChange& change) override;
 
-  /// d(q, qd)/d(name), (n_t, 2n, k) row-major.
+  /// d(q, qd)/d(name), (n_t, 2n, k) row-major, of what the run has kept; at its end they are
+  /// computed by this call.
   const std::vector<double>& values() const;
   /// Why there are none from some time on, and from when; empty if there are.
   const std::string& refusal() const;

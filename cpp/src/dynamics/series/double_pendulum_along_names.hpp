@@ -1,8 +1,9 @@
 /// \file
 /// How the series of double_pendulum_series.hpp change along eight names at once.
 ///
-/// An order of all eight changes of both links takes four fused operations for each order before it
-/// (coefficients_of_changes.hpp). Slopes of the recurrence for n and qd itself took sixteen.
+/// They obey a linear recurrence (coefficients_of_changes.hpp): an order of all eight changes of
+/// both links takes four fused operations for each order before it, where slopes of the recurrence
+/// of the motion itself took sixteen.
 ///
 /// Cost: for order p, 2 p^2 operations on packs for each eight names. Two orders at a time, and
 /// sixteen names, share what is loaded for them.
