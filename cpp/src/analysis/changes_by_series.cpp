@@ -102,8 +102,8 @@ PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, cons
   }
 }
 
-/// How far series reach, as a share of x. At a share z, what is left out is 2 N (N/M) z^(order + 4),
-/// and N/M is z^4 times what it is at x.
+/// How far series reach, as a share of x. At a share z, what is left out is
+/// 2 N (N/M) z^(order + 4), and N/M is z^4 times what it is at x.
 double share_of_reach(const Decay& decay, double tolerance) {
   const double where_half = std::sqrt(std::sqrt(0.5 * decay.by_orders));
   if (!(where_half > 0.0)) return 0.0;
