@@ -113,8 +113,10 @@ def test_between_the_steps_they_are_those_of_a_run_that_keeps_these_times(
     ("method", "step", "within"),
     [("dop853", 1e-3, 1e-12), ("dopri5", 1e-3, 1e-12), ("dop853", 0.25, 1e-4)],
 )
-def test_they_have_steps_of_their_own(method: str, step: float, within: float) -> None:
-    """A series serves hundreds of short steps of a run, and two or more serve a long one."""
+def test_short_and_long_steps_of_a_run_have_the_same(
+    method: str, step: float, within: float
+) -> None:
+    """Series have steps of their own, which end between those of the run."""
     slow = pc.Scene(links=[pc.Link(mass=1.0, length=10.0)] * 2)
     how: Any = {"t_eval": [1.3, 6.0], "sensitivities": ["q0[1]", "qd0[2]", "gravity"]}
     found = pc.simulate(slow, (0, 6), [0.5, 1.0], method=method, step=step, **how)
@@ -126,7 +128,7 @@ def test_they_have_steps_of_their_own(method: str, step: float, within: float) -
 
 @pytest.mark.parametrize("method", ["taylor", "dop853", "dopri5"])
 def test_a_spring_has_those_of_its_cosine(method: str) -> None:
-    """However fast the rod begins: of a linear motion the derivatives do not know."""
+    """The equation is linear, so that they do not depend on how fast the rod turns."""
     spring = ROD_ALONE.replace(effects=[E.TorsionalSpring(joint=1, stiffness=1.0 / 3.0)])
     t = np.linspace(0, 20, 201)
     for rate in (0.06, 0.838, 5.9, 200.0):

@@ -65,7 +65,7 @@ PENDCORE_INLINE Slopes sum_of_slopes(const AlongNames* rows, int size, int last,
 struct Decay {
   double by_size = std::numeric_limits<double>::infinity();    ///< (S/N)(M/N)
   double by_orders = std::numeric_limits<double>::infinity();  ///< M/N
-  bool is_lost = false;  ///< whether N is rounding for a name: x says little, as it is too near
+  bool is_too_near = false;  ///< whether the last orders of a name are rounding at x
 };
 PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, const bool* are_numbers,
                                 Decay* decay) {
@@ -91,8 +91,8 @@ PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, cons
     if (!are_numbers[k] || (is_finite && before[k] + last[k] == 0.0)) continue;
     const double rounding = 0.1 * epsilon * change[k];
     if (is_finite && last[k] <= rounding) {
-      decay->is_lost = true;
-      decay->by_size = std::min(decay->by_size, change[k] / rounding);
+      decay->is_too_near = true;
+      decay->by_size = std::min(decay->by_size, 10.0 / epsilon);
       continue;
     }
     const double by_orders = is_finite ? before[k] / last[k] : 0.0;
@@ -102,8 +102,8 @@ PENDCORE_INLINE void find_decay(const AlongNames* rows, int size, double x, cons
   }
 }
 
-/// How far series reach, as a share of x. At a share z, what is left out is
-/// 2 N (N/M) z^(order + 4), and N/M is z^4 times what it is at x.
+/// How far series reach, as a share of x. If N and M are their highest orders, what is left out at
+/// a share z is 2 N (N/M) z^(order + 4), and N/M is z^4 times what it is at x.
 double share_of_reach(const Decay& decay, double tolerance) {
   const double where_half = std::sqrt(std::sqrt(0.5 * decay.by_orders));
   if (!(where_half > 0.0)) return 0.0;
@@ -146,9 +146,7 @@ struct ChangesBySeries::Part {
       : series(series_of(mechanism, held)),
         first(first_name),
         count(names),
-        rows((order + 1) * 2 * held.size()) {
-    std::visit([](auto& one) { one.set_order(order); }, series);
-  }
+        rows((order + 1) * 2 * held.size()) {}
 
   int size() const { return static_cast<int>(rows.size()) / (order + 1); }
   /// Puts changes into row 0, those of names that have some.
@@ -183,8 +181,10 @@ struct ChangesBySeries::Part {
         return DoublePendulumAlongNames(mechanism, std::move(effects));
       }
     }
-    return SeriesOfChain(ConstantsOfChain<AlongNames>(mechanism),
-                         std::make_shared<const EffectsWithSlopes<AlongNames>>(mechanism, held));
+    SeriesOfChain chain(ConstantsOfChain<AlongNames>(mechanism),
+                        std::make_shared<const EffectsWithSlopes<AlongNames>>(mechanism, held));
+    chain.set_order(order);
+    return chain;
   }
 };
 
@@ -267,7 +267,7 @@ double ChangesBySeries::expand(double t, const double* y, bool forward) {
     if (share < near_enough) {
       was_too_far = true;
       reach_ *= std::max(share, 0x1p-8);
-    } else if (decay.is_lost && !was_too_far && tries + 1 < most_tries) {
+    } else if (decay.is_too_near && !was_too_far && tries + 1 < most_tries) {
       reach_ *= farther;
     } else {
       return reach_ *= share;

@@ -6,7 +6,7 @@
 /// links have a recurrence of their own (double_pendulum_along_names.hpp). A series from a state
 /// and its changes has the changes as far as it converges, whichever method makes the run: it may
 /// serve many steps, or end within one. Where it ends follows from how fast the slopes fall: with
-/// N the largest of the last four orders there, and M that of the four before, what is left out is
+/// N the sum of the last four orders there, and M that of the four before, what is left out is
 /// taken as 2 N (N/M), where N/M is at most a half. Where N is rounding, the series is looked at
 /// farther on.
 ///
@@ -26,13 +26,13 @@ class CoefficientsOfChanges;
 
 class ChangesBySeries {
  public:
-  /// The tolerance is the share of its size by which a series may miss a change.
+  /// The tolerance is what a series may leave out of a change, as a share of that change.
   explicit ChangesBySeries(double tolerance);
   ~ChangesBySeries();
 
   /// Takes the laws in force and the changes at the start, (2n, names); those of names that are not
-  /// finite stay so. Returns false where the laws have no series. The first series is looked at
-  /// after `first_reach`, s, others where the last one ended.
+  /// finite stay so. Returns false where the laws have no series. The first series, since laws
+  /// changed or none converged, is looked at after `first_reach`, s, others where the last ended.
   bool start(const VariationalEquations& equations, const Matrix& changes, double first_reach);
   /// Computes the series from where they start, at a state y. Returns how far they reach, s,
   /// forward or backward in time; 0 where none converges.

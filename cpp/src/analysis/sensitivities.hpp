@@ -4,11 +4,11 @@
 ///
 /// Where the laws in force have a Taylor series, the changes go on by series of numbers with slopes
 /// (changes_by_series.hpp), in steps of their own. Where they have none, or where a step of the run
-/// would take many, that step is a linear system: d(dqd)/dt is the polynomial that holds at the
-/// points of a Gauss quadrature (gauss_collocation.hpp), along the run's own dense output. A step
-/// in which the polynomial has not converged is halved, again and again at a kink; where it never
-/// converges, there are no derivatives from there on (NaN). Where laws change, the changes go on by
-/// their saltation (saltation.hpp), or are refused.
+/// would take many, the rest of that step is a linear system: d(dqd)/dt is the polynomial that
+/// holds at the points of a Gauss quadrature (gauss_collocation.hpp), along the run's dense output. A
+/// part in which the polynomial has not converged is halved, again and again at a kink; where it
+/// never converges, there are no derivatives from there on (NaN). Where laws change, the changes go
+/// on by their saltation (saltation.hpp), or are refused.
 ///
 /// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), I.14, II.7.
 /// Cost: that of the series; or for each step s Jacobians, O(n^3 s^3), and for each parameter s
@@ -25,8 +25,8 @@
 
 namespace pendcore {
 
-/// Finds the derivatives of one run while it is made. It needs the dense output of every step; the
-/// run may keep anything.
+/// Finds the derivatives of one run while it is made. It may ask for the dense output of any step;
+/// the run may keep anything.
 class Sensitivities final : public KeepingWatch {
  public:
   /// Names are those of VariationalEquations, which throws std::invalid_argument for others.

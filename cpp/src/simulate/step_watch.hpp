@@ -18,8 +18,8 @@ struct WatchedStep {
   double t;                   ///< s, at its end
   double h;                   ///< s, from theta = 0 to 1; negative in a backward run
   std::span<const double> y;  ///< the state there: angles, rates, accounts of the ledger
-  /// Returns the dense output in powers of theta, (degree + 1, size of y), to watches that ask for
-  /// it, until steps() returns. Some methods take stages of their own for it.
+  /// Computes the dense output in powers of theta, (degree + 1, size of y), at its first call, for
+  /// watches that ask for it. It is there until steps() returns.
   std::function<const double*()> rows;
   int degree;
   double share;  ///< of the step: theta at its end, 1 unless an event ends it

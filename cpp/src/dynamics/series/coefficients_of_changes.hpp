@@ -1,26 +1,26 @@
 /// \file
-/// What the changes of a double pendulum along any names have in common (series of
-/// double_pendulum_series.hpp).
+/// The equations that the changes of a double pendulum along all names have in common, with the
+/// names and the units of time of double_pendulum_series.hpp.
 ///
 /// A change (dq, dqd) obeys linear equations. With N the n of the other link along the axes of this
-/// one, u = (n_y, -n_x), and P = gamma (s_0, c_0) - rho u''(other),
+/// one, u = (n_y, -n_x), P = gamma (s_0, c_0) - rho u_tt(other), and j = J_2/A of the rotor,
 ///
-///     dqdd + (rho n.N - sigma) dqdd' = -rho (2 n.N_t dqd' + n.N_tt dq') - u.P dq
-///                                      + dgamma cos q - drho n.u''(other) + dsigma qdd' + d(tau/A)
+///     dqdd + (rho n.N - j) dqdd' = -rho (2 n.N_t dqd' + n.N_tt dq') - u.P dq
+///                                  + dgamma cos q - drho n.u_tt(other) + dj qdd' + d(tau/A)
 ///
 /// From their series c of n.N, h of 2 n.N_t, g of n.N_tt and w of u.P, with sums over m <= k and
-/// j = k - m,
+/// i = k - m,
 ///
-///     (k + 1) (k + 2) (dq_{k+2} + kappa dq'_{k+2}) = -rho sum_{m>=-1} e_m dq'_j
-///                                                    - sum_{m>=0} w_m dq_j + f_k
-///     e_m = j (j - 1) c_{m+2} + j h_{m+1} + g_m,   kappa = rho c_0 - sigma
+///     (k + 1) (k + 2) (dq_{k+2} + kappa dq'_{k+2}) = -rho sum_{m>=-1} e_m dq'_i
+///                                                    - sum_{m>=0} w_m dq_i + f_k
+///     e_m = i (i - 1) c_{m+2} + i h_{m+1} + g_m,   kappa = rho c_0 - j
 ///
 /// Each e_m is a polynomial in k, with one c_{m+2} before k^2.
 ///
-/// With C and S the cosine and sine of q' - q, C' = (qd - qd') S and S' = (qd' - qd) C, so that
+/// With C and S the cosine and sine of q' - q, C_t = (qd - qd') S and S_t = (qd' - qd) C, so that
 ///
 ///     n.N = C,  2 n.N_t = -2 qd' S,  n.N_tt = -(qd' S)_t - qd qd' C
-///     n.u''(other) = (qd' C)_t - qd qd' S,   u.P = gamma sin q - rho n.N_tt
+///     n.u_tt(other) = (qd' C)_t - qd qd' S,   u.P = gamma sin q - rho n.N_tt
 ///
 /// Cost: for order p, the series of the values, and eight sums of products.
 #pragma once
@@ -31,7 +31,7 @@
 
 namespace pendcore {
 
-/// What the equations of changes have in common: series in units of sigma.
+/// Computes the series of these coefficients.
 class CoefficientsOfChanges {
  public:
   using Orders = Pack<8>;  ///< eight orders of a series
@@ -57,11 +57,12 @@ class CoefficientsOfChanges {
 
   double states[4 * (highest_order + 1)];  ///< (q_1, q_2, qd_1, qd_2) of each order
   PaddedSeries rate[2];
-  Series angle[2], acceleration[2];  ///< in powers of sigma
-  Series cosine[2];                  ///< sigma^2 cos q
-  Series bend[2];                    ///< n.u''(other)
-  Series pull[2];                    ///< -w
+  Series angle[2], acceleration[2];
+  Series cosine[2];  ///< sigma^2 cos q
+  Series bend[2];    ///< n.u_tt(other)
+  Series pull[2];    ///< -w
   Pair kappa;
+  double inverse;  ///< 1/(1 - kappa kappa')
   /// -rho e_m = (square k + slope) k + constant, from m = -1 on.
   struct OfAngle {
     Series square, slope, constant;
@@ -80,7 +81,9 @@ class CoefficientsOfChanges {
     return all;
   }();
   PENDCORE_INLINE static Orders from(int first) { return load<Orders>(numbers.data() + first); }
-  PENDCORE_INLINE static Orders inverse(int first) { return load<Orders>(inverses.data() + first); }
+  PENDCORE_INLINE static Orders one_over(int first) {
+    return load<Orders>(inverses.data() + first);
+  }
   PENDCORE_INLINE static Orders of_derivative(const PaddedSeries& x, int first) {
     return from(first + 1) * x.eight(first + 1);
   }
@@ -122,7 +125,7 @@ PENDCORE_INLINE void CoefficientsOfChanges::find_products(double cos, double sin
   for (int first = 0; first <= order; first += width) {
     for (int i = 0; i < 2; ++i) rate_by_cos_[i].set_eight(first, product(rate[i], cos_, first));
     const Orders slope = rate_by_cos_[1].eight(first) - rate_by_cos_[0].eight(first);
-    sin_.set_eight(first + 1, inverse(first + 1) * slope);
+    sin_.set_eight(first + 1, one_over(first + 1) * slope);
   }
   for (int first = 0; first <= order; first += width) {
     for (int i = 0; i < 2; ++i) rate_by_sin_[i].set_eight(first, product(rate[i], sin_, first));
@@ -151,6 +154,8 @@ PENDCORE_INLINE void CoefficientsOfChanges::find(const OfLinks& constants, const
   const double cos = fma(c0[1], c0[0], s0[1] * s0[0]);
   find_products(cos, sin, order);
   kappa = constants.coupling * cos - constants.rotor;
+  inverse = orders.inverse[0];
+  store(states, load<Pack<4>>(y));
 
   const Pair weight = (sigma * sigma) * constants.weight;
   for (int first = 0; first < order; first += width) {
@@ -169,7 +174,7 @@ PENDCORE_INLINE void CoefficientsOfChanges::find(const OfLinks& constants, const
             fma(constants.coupling[i], second_[i].eight(first), -(weight[i] * sine)));
       store(acceleration[i].data() + first, of_derivative(rate[i], first));
       angle[i][0] = start[i];
-      store(angle[i].data() + first + 1, Orders(inverse(first + 1) * rate[i].eight(first)));
+      store(angle[i].data() + first + 1, Orders(one_over(first + 1) * rate[i].eight(first)));
     }
   }
   for (int i = 0; i < 2; ++i) {

@@ -35,15 +35,14 @@ class DoublePendulumAlongNames {
   }
   DoublePendulumAlongNames(const Mechanism<AlongNames>& of, Effects effects);
 
-  void set_order(int /*order*/) {}
   /// Finds what all names have in common on a step from a state y.
   PENDCORE_INLINE void find_common(double t, const double* y, double sigma, int order,
                                    CoefficientsOfChanges& common) const;
   struct Changes;
-  /// Computes the changes of so many times eight names up to an even order.
+  /// Computes the changes of `count` groups of eight names up to an even order.
   template <int count>
   PENDCORE_INLINE static void expand(const CoefficientsOfChanges& common, double sigma, int order,
-                                     Changes* eights);
+                                     Changes* groups);
 
  private:
   Constants constants_;
@@ -83,6 +82,7 @@ PENDCORE_INLINE void DoublePendulumAlongNames::find_common(double t, const doubl
 /// The changes along eight names, while they are computed order by order.
 struct DoublePendulumAlongNames::Changes {
   using Slopes = decltype(AlongNames::slope);
+  /// Of the first and the second link, each in two parts that do not wait for each other.
   struct Sums {
     Slopes first, second, more_first, more_second;
   };
@@ -99,6 +99,8 @@ struct DoublePendulumAlongNames::Changes {
       angles[1][i] = sigma * rows[2 + i].slope;
     }
   }
+
+  Changes(const Changes&) = delete;  // the torque refers to the laws
 
   /// What is known of order k before all sums.
   PENDCORE_INLINE Sums known(const CoefficientsOfChanges& common, int k) {
@@ -136,15 +138,14 @@ struct DoublePendulumAlongNames::Changes {
 
 template <int count>
 PENDCORE_INLINE void DoublePendulumAlongNames::expand(const CoefficientsOfChanges& common,
-                                                      double sigma, int order, Changes* eights) {
+                                                      double sigma, int order, Changes* groups) {
   using Orders = CoefficientsOfChanges::Orders;
   using Slopes = Changes::Slopes;
   using Sums = Changes::Sums;
-  using OfAngle = double[2][CoefficientsOfChanges::room];
+  using Factors = double[2][CoefficientsOfChanges::room];
   const Pair& kappa = common.kappa;
-  const double determinant = 1.0 / fma(-kappa[0], kappa[1], 1.0);
   const double per_sigma = inverse_of_power_of_two(sigma);
-  const auto find_e = [&](int k, OfAngle& e) __attribute__((always_inline)) {
+  const auto find_e = [&](int k, Factors& e) __attribute__((always_inline)) {
     for (int i = 0; i < 2; ++i) {
       const auto& [square, slope, constant] = common.of_angle[i];
       for (int m = 0; m < k + 2; m += CoefficientsOfChanges::width) {
@@ -155,18 +156,18 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const CoefficientsOfChange
     }
   };
   // Adds what order k has from the changes of order j.
-  const auto add = [&](const Slopes* angles, const OfAngle& e, int k, int j, Sums& sums)
+  const auto add = [&](const Slopes* angles, const Factors& e, int k, int j, Sums& sums)
                        __attribute__((always_inline)) {
                          sums.first = fma(e[0][k - j + 1], angles[1], sums.first);
                          sums.second = fma(e[1][k - j + 1], angles[0], sums.second);
                          sums.more_first = fma(common.pull[0][k - j], angles[0], sums.more_first);
                          sums.more_second = fma(common.pull[1][k - j], angles[1], sums.more_second);
                        };
-  const auto finish = [&](const OfAngle& e, int k, const Sums& sums,
+  const auto finish = [&](const Factors& e, int k, const Sums& sums,
                           Changes& changes) __attribute__((always_inline)) {
     auto& angles = changes.angles;
     const auto& [first, second, more_first, more_second] = sums;
-    const double share = inverse_of[k + 1] * inverse_of[k + 2] * determinant;
+    const double share = inverse_of[k + 1] * inverse_of[k + 2] * common.inverse;
     const Slopes of_first = fma(e[0][0], angles[k + 1][1], first + more_first);
     const Slopes of_second = fma(e[1][0], angles[k + 1][0], second + more_second);
     const Slopes next_first = share * fma(-kappa[0], of_second, of_first);
@@ -179,28 +180,28 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const CoefficientsOfChange
     row[2].slope = ((k + 2) * per_sigma) * next_first;
     row[3].slope = ((k + 2) * per_sigma) * next_second;
   };
-  OfAngle e, next_e;  // from m = -1 on
+  Factors e, next_e;  // from m = -1 on
   for (int k = 0; k < order; k += 2) {
     find_e(k, e);
     find_e(k + 1, next_e);
     Sums sums[count], next[count]{};
 #pragma GCC unroll 2
-    for (int p = 0; p < count; ++p) sums[p] = eights[p].known(common, k);
+    for (int p = 0; p < count; ++p) sums[p] = groups[p].known(common, k);
     for (int j = 0; j <= k; ++j) {
 #pragma GCC unroll 2
       for (int p = 0; p < count; ++p) {
-        add(eights[p].angles[j], e, k, j, sums[p]);
-        add(eights[p].angles[j], next_e, k + 1, j, next[p]);
+        add(groups[p].angles[j], e, k, j, sums[p]);
+        add(groups[p].angles[j], next_e, k + 1, j, next[p]);
       }
     }
 #pragma GCC unroll 2
     for (int p = 0; p < count; ++p) {
-      finish(e, k, sums[p], eights[p]);
-      const Sums known = eights[p].known(common, k + 1);
-      add(eights[p].angles[k + 1], next_e, k + 1, k + 1, next[p]);
+      finish(e, k, sums[p], groups[p]);
+      const Sums known = groups[p].known(common, k + 1);
+      add(groups[p].angles[k + 1], next_e, k + 1, k + 1, next[p]);
       next[p].first = next[p].first + known.first;
       next[p].second = next[p].second + known.second;
-      finish(next_e, k + 1, next[p], eights[p]);
+      finish(next_e, k + 1, next[p], groups[p]);
     }
   }
 }
