@@ -212,8 +212,7 @@ void ChangesBySeries::expand_parts(double t, const double* y, double sigma) {
   }
 }
 
-ChangesBySeries::ChangesBySeries(double tolerance)
-    : tolerance_(tolerance), common_(std::make_unique<CoefficientsOfChanges>()) {}
+ChangesBySeries::ChangesBySeries() : common_(std::make_unique<CoefficientsOfChanges>()) {}
 ChangesBySeries::~ChangesBySeries() = default;
 
 /// Makes the series of the laws that are in force; none where they have none.
@@ -238,7 +237,8 @@ void ChangesBySeries::take_laws(const VariationalEquations& equations) {
 }
 
 bool ChangesBySeries::start(const VariationalEquations& equations, const Matrix& changes,
-                            double first_reach) {
+                            double first_reach, double tolerance) {
+  tolerance_ = tolerance;
   if (laws_ != equations.changes_of_laws()) take_laws(equations);
   for (Part& part : parts_) part.start(changes);
   if (reach_ == 0.0) reach_ = first_reach;

@@ -26,14 +26,15 @@ class CoefficientsOfChanges;
 
 class ChangesBySeries {
  public:
-  /// The tolerance is what a series may leave out of a change, as a share of that change.
-  explicit ChangesBySeries(double tolerance);
+  ChangesBySeries();
   ~ChangesBySeries();
 
   /// Takes the laws in force and the changes at the start, (2n, names); those of names that are not
   /// finite stay so. Returns false where the laws have no series. The first series, since laws
   /// changed or none converged, is looked at after `first_reach`, s, others where the last ended.
-  bool start(const VariationalEquations& equations, const Matrix& changes, double first_reach);
+  /// Each may leave out the tolerance of a change, a share of it.
+  bool start(const VariationalEquations& equations, const Matrix& changes, double first_reach,
+             double tolerance);
   /// Computes the series from where they start, at a state y. Returns how far they reach, s,
   /// forward or backward in time; 0 where none converges.
   double expand(double t, const double* y, bool forward);
@@ -50,11 +51,11 @@ class ChangesBySeries {
   void take_laws(const VariationalEquations& equations);
   void expand_parts(double t, const double* y, double sigma);
 
-  double tolerance_;
   std::vector<Part> parts_;
   std::unique_ptr<CoefficientsOfChanges> common_;
   std::vector<double> sums_;
-  int laws_ = 0;        ///< VariationalEquations::changes_of_laws() of the parts
+  int laws_ = 0;  ///< VariationalEquations::changes_of_laws() of the parts
+  double tolerance_ = 0.0;
   double reach_ = 0.0;  ///< s, of the last series; 0 if there is none
   double per_sigma_ = 1.0;
 };

@@ -60,7 +60,7 @@ struct Sensitivities::Variation {
   double tolerance = least_tolerance;
 
   // The series that is under way: it may serve many steps.
-  std::optional<ChangesBySeries> series{};
+  ChangesBySeries series{};
   bool has_series = false;
   bool is_behind = false;  ///< whether the changes at t_start are still to be computed
   double since = 0.0;      ///< s, from where the series begins to t_start
@@ -207,7 +207,6 @@ void Sensitivities::Variation::start(double t, std::span<const double> y) {
   has_started = true;
   t_start = t;
   state.assign(y.begin(), y.end());
-  series.emplace(tolerance / 3.0);
   equations.choose_laws(t, y.data());
   const bool is_asked_for = !t_eval.empty() && t_eval.front() == t;
   if (is_asked_for) ++next_time;
@@ -223,8 +222,8 @@ void Sensitivities::Variation::find_state(const WatchedStep& step, double share)
     states = state;
   } else if (has_series && since / step.h >= 0.0) {
     std::vector<double> at_start(step.y.size());
-    series->state(since, at_start.data());
-    series->state(since + share * step.h, states.data());
+    series.state(since, at_start.data());
+    series.state(since + share * step.h, states.data());
     for (int i = 0; i < 2 * n; ++i) states[i] += state[i] - at_start[i];
   } else {
     static const auto sample = fastest<&sample_rows>();
@@ -244,14 +243,14 @@ bool Sensitivities::Variation::follow_by_series(const WatchedStep& step, double 
     from = std::max(end, 0.0);
     find_state(step, from);
     if (has_series) {
-      series->move_start(since + from * step.h);
-    } else if (!series->start(equations, now, 2.0 * std::abs(step.h))) {
+      series.move_start(since + from * step.h);
+    } else if (!series.start(equations, now, 2.0 * std::abs(step.h), tolerance / 3.0)) {
       return false;
     }
-    const double span = series->expand(t_start + from * step.h, states.data(), step.h > 0.0);
+    const double span = series.expand(t_start + from * step.h, states.data(), step.h > 0.0);
     has_series = span >= least_part * std::abs(step.h);
     if (!has_series) {
-      series->evaluate(0.0, now);
+      series.evaluate(0.0, now);
       return false;
     }
     reach = std::copysign(span, step.h);
@@ -260,7 +259,7 @@ bool Sensitivities::Variation::follow_by_series(const WatchedStep& step, double 
 }
 /// Computes the changes where the run is.
 void Sensitivities::Variation::catch_up() {
-  if (is_behind) series->evaluate(since, now);
+  if (is_behind) series.evaluate(since, now);
   is_behind = false;
 }
 void Sensitivities::Variation::finish() {
@@ -284,7 +283,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   // By collocation, a time that is kept is the end of a part: there, the order is highest.
   const auto go_straight_to = [&](double to) {
     if (has_followed(to)) {
-      series->evaluate(since + to * step.h, now);
+      series.evaluate(since + to * step.h, now);
     } else if (to > from) {
       advance(step, from, to, 0);
       from = to;

@@ -5,8 +5,8 @@
 /// Where the laws in force have a Taylor series, the changes go on by series of numbers with slopes
 /// (changes_by_series.hpp), in steps of their own. Where they have none, or where a step of the run
 /// would take many, the rest of that step is a linear system: d(dqd)/dt is the polynomial that
-/// holds at the points of a Gauss quadrature (gauss_collocation.hpp), along the run's dense output. A
-/// part in which the polynomial has not converged is halved, again and again at a kink; where it
+/// holds at the points of a Gauss quadrature (gauss_collocation.hpp), along the run's dense output.
+/// A part in which the polynomial has not converged is halved, again and again at a kink; where it
 /// never converges, there are no derivatives from there on (NaN). Where laws change, the changes go
 /// on by their saltation (saltation.hpp), or are refused.
 ///
