@@ -61,29 +61,29 @@ struct Sensitivities::Variation {
 
   // The series that is under way: it may serve many steps.
   ChangesBySeries series{};
+  double since = 0.0;  ///< s, from where the series begins to t_start
+  double reach = 0.0;  ///< s, from there to where it ends, negative in a backward run
   bool has_series = false;
   bool is_behind = false;  ///< whether the changes at t_start are still to be computed
-  double since = 0.0;      ///< s, from where the series begins to t_start
-  double reach = 0.0;      ///< s, from there to where it ends, negative in a backward run
 
   // The part of a step that is under way.
-  int points_at_once = 8;
   bool has_points_to_spare = false;
+  int points_at_once = 8;
+  int cuts_left = 0;  ///< into which the step may still be cut
   std::vector<double> thetas{}, states{}, decay{};
   Vector floor{};            ///< what rounding alone makes of d qdd/d p, (k), by epsilon
   Vector sizes_elsewhere{};  ///< once they have been needed
-  int cuts_left = 0;         ///< into which the step may still be cut
   Matrix by_q{}, by_qd{}, by_parameters{}, by_name{}, padded{}, system{};
 
   bool has_started = false;
   bool keeps_end = true;
   bool keeps_times = false;
+  bool is_over = false;  ///< no name has a derivative any more
   std::vector<double> t_eval{};
   std::size_t next_time = 0;
   double t_kept = std::numeric_limits<double>::quiet_NaN();  ///< s, of the last values
   std::vector<double> values{};
   std::string refusal{};
-  bool is_over = false;  ///< no name has a derivative any more
 };
 
 void Sensitivities::Variation::keep(double t) {
