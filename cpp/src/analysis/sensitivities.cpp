@@ -35,7 +35,7 @@ struct Sensitivities::Variation {
   void find_state(const WatchedStep& step, double share);
   bool follow_by_series(const WatchedStep& step, double share, double& from);
   void catch_up();
-  void finish();
+  void keep_end();
   void change_laws(const WatchedChange& change);
   void refuse_from(double t, const std::string& why);
   bool has_converged(double h);
@@ -262,7 +262,8 @@ void Sensitivities::Variation::catch_up() {
   if (is_behind) series.evaluate(since, now);
   is_behind = false;
 }
-void Sensitivities::Variation::finish() {
+/// Keeps the changes where the run is, if it keeps its end alone.
+void Sensitivities::Variation::keep_end() {
   if (!keeps_end) return;
   catch_up();
   values.assign(now.data(), now.data() + now.size());
@@ -367,7 +368,7 @@ void Sensitivities::changes(const WatchedChange& change) { variation_->change_la
 const std::string& Sensitivities::refusal() const { return variation_->refusal; }
 const std::vector<double>& Sensitivities::values() const {
   const FloatingPointEnvironment ieee;
-  variation_->finish();
+  variation_->keep_end();
   return variation_->values;
 }
 std::size_t Sensitivities::states() const { return static_cast<std::size_t>(2 * variation_->n); }

@@ -82,7 +82,7 @@ PENDCORE_INLINE void DoublePendulumAlongNames::find_common(double t, const doubl
 /// The changes along eight names, while they are computed order by order.
 struct DoublePendulumAlongNames::Changes {
   using Slopes = decltype(AlongNames::slope);
-  /// Of the first and the second link, each in two parts that do not wait for each other.
+  /// The sums of both links. Each has two parts, so that one operation need not wait for the other.
   struct Sums {
     Slopes first, second, more_first, more_second;
   };
@@ -102,8 +102,8 @@ struct DoublePendulumAlongNames::Changes {
 
   Changes(const Changes&) = delete;  // the torque refers to the laws
 
-  /// What is known of order k before all sums.
-  PENDCORE_INLINE Sums known(const CoefficientsOfChanges& common, int k) {
+  /// Computes the terms of order k that the parameters and the torques give.
+  PENDCORE_INLINE Sums given_terms(const CoefficientsOfChanges& common, int k) {
     const auto of_link = [&](int i, const Slopes& weight, const Slopes& coupling,
                              const Slopes& rotor) __attribute__((always_inline)) {
       return fma(common.cosine[i][k], weight,
@@ -186,7 +186,7 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const CoefficientsOfChange
     find_e(k + 1, next_e);
     Sums sums[count], next[count]{};
 #pragma GCC unroll 2
-    for (int p = 0; p < count; ++p) sums[p] = groups[p].known(common, k);
+    for (int p = 0; p < count; ++p) sums[p] = groups[p].given_terms(common, k);
     for (int j = 0; j <= k; ++j) {
 #pragma GCC unroll 2
       for (int p = 0; p < count; ++p) {
@@ -197,10 +197,10 @@ PENDCORE_INLINE void DoublePendulumAlongNames::expand(const CoefficientsOfChange
 #pragma GCC unroll 2
     for (int p = 0; p < count; ++p) {
       finish(e, k, sums[p], groups[p]);
-      const Sums known = groups[p].known(common, k + 1);
+      const Sums given = groups[p].given_terms(common, k + 1);
       add(groups[p].angles[k + 1], next_e, k + 1, k + 1, next[p]);
-      next[p].first = next[p].first + known.first;
-      next[p].second = next[p].second + known.second;
+      next[p].first = next[p].first + given.first;
+      next[p].second = next[p].second + given.second;
       finish(next_e, k + 1, next[p], groups[p]);
     }
   }
