@@ -216,9 +216,10 @@ PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--f
     --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 endef
 
-# Derivatives through impacts, stick and release, against complex numbers; SEEDS=0:300 unless told.
+# Derivatives against complex numbers, of hybrid runs, or against forty digits, of smooth ones; SEEDS=0:300 unless told.
+RUNS ?= hybrid
 define CAMPAIGN_derivatives
-PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds $(if $(filter file,$(origin SEEDS)),0:300,$(SEEDS))
+PYTHONPATH=tests:tests/models python -m derivatives.campaign $(RUNS) --seeds $(if $(filter file,$(origin SEEDS)),0:300,$(SEEDS))
 endef
 
 # Which small mistakes the tests notice; hours, goes on where it stopped.

@@ -173,7 +173,8 @@ class Sensitivities(Reducer):
     Parameters
     ----------
     names : list of str, (k,)
-        ``"q0[1]"``, ``"qd0[2]"``, or any of `Scene.parameters`, whether it varies or not.
+        Those of ``simulate(sensitivities=...)``, whether they vary or not: ``"q0[1]"``,
+        ``"qd0[2]"``, ``"torque[1]"``, ``"pivot.x"``, or any of `Scene.parameters`.
 
     Examples
     --------

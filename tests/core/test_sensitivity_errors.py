@@ -154,6 +154,13 @@ def test_a_name_that_moves_nothing_is_right_to_the_end() -> None:
     np.testing.assert_array_equal(sol.sensitivities_valid_until(), [5.0, 5.0])
 
 
+def test_a_name_that_acts_from_an_impact_on_is_right_from_there() -> None:
+    """Just before the impact, the derivative by it is zero, and its error is none of zero's."""
+    names = ["q0[1]", "effect[1].restitution", "effect[1].range.upper", "effect[2].coulomb"]
+    sol = pc.simulate(BUMPY, (0, 2), [0.3, 0.5], [0.0, 4.0], sensitivities=names)
+    np.testing.assert_array_equal(sol.sensitivities_valid_until(1e-6), [2.0] * 4)
+
+
 def test_a_graze_ends_them_and_so_does_the_run_of_their_error() -> None:
     """The rod comes to rest just at its stop, where rounding decides: beyond, nothing is known."""
     graze = E.JointStop(joint=1, range=(-9, np.pi - 0.3), restitution=0.5)
@@ -172,7 +179,7 @@ def test_a_graze_ends_them_and_so_does_the_run_of_their_error() -> None:
 
 def test_print_says_by_which_names_there_is_no_derivative() -> None:
     rubs = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=0.5)])
-    with pytest.warns(pc.PendcoreWarning, match=r'none of "qd0\[1\]"'):
+    with pytest.warns(pc.PendcoreWarning, match=r'none by "qd0\[1\]"'):
         sol = pc.simulate(rubs, (0, 1), [0.6, 0.3], sensitivities=["q0[1]", "qd0[1]"])
     assert ", none by qd0[1] from 0 s on; until when" in str(sol)
     np.testing.assert_array_equal(sol.sensitivities_valid_until(), [1.0, 0.0])

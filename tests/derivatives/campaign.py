@@ -1,11 +1,15 @@
-"""`make campaign OF=derivatives`: sensitivities through impacts, stick and release, by the hundred.
+"""`make campaign OF=derivatives`: sensitivities of random runs, by the hundred.
 
-    PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds 0:300
-    PYTHONPATH=tests:tests/models python -m derivatives.campaign --seeds 51:52    # that one
+    PYTHONPATH=tests:tests/models python -m derivatives.campaign hybrid --seeds 0:300
+    PYTHONPATH=tests:tests/models python -m derivatives.campaign hybrid --seeds 51:52    # that one
+    PYTHONPATH=tests:tests/models python -m derivatives.campaign smooth --seeds 0:1000
 
-A run whose derivative is wrong is listed, and so is one whose end is not that of the reference: the
-exit status is then 1. A run may be refused, and says why, or only some names by name; some have no
-reference. From seed 300 on, some motors have tables, and some joints rest at the start.
+Hybrid runs go through impacts, stick and release; smooth ones have all other effects. A run whose
+derivative is wrong is listed, and so is one whose end is not that of the reference: the exit status
+is then 1. A run may be refused, and says why, or only some names by name; some have no reference.
+From seed 300 on, some motors of hybrid runs have tables, and some joints rest at the start. Smooth
+runs of odd seeds are in air, and are listed where they are off by more than those of even seeds may
+be.
 """
 
 from __future__ import annotations
@@ -17,10 +21,12 @@ from typing import NamedTuple
 import numpy as np
 from tqdm import tqdm
 
-from derivatives.hybrid_runs import by_complex_numbers, by_pendcore, drawn
+from derivatives import hybrid_runs, smooth_runs
 
 ALLOWED = 1e-8
 """A share of the largest entry: of derivatives, and of states, that both are of the same motion."""
+ALLOWED_IF_SMOOTH, ALLOWED_IN_AIR = 1e-12, 1e-9
+"""The same of smooth runs, where a column of derivatives may have its own largest entry."""
 
 
 class Verdict(NamedTuple):
@@ -35,10 +41,38 @@ class Verdict(NamedTuple):
     told: str
 
 
+def judged_smooth(seed: int) -> Verdict:
+    """Hold a smooth run against differences in many digits."""
+    case = smooth_runs.drawn(seed)
+    end, columns, why = smooth_runs.by_pendcore(case)
+    is_there = np.isfinite(columns).all(axis=0)
+    names = [name for name, there in zip(case.signs, is_there, strict=True) if there]
+    refused = len(case.signs) - len(names)
+    if any(f'"{name}"' not in why for name in {*case.signs} - {*names}):
+        return Verdict(seed, 0, refused, np.nan, "wrong", f"no derivative, in silence: {why}")
+    sizes = np.abs(columns).max(axis=0)
+    transition = np.nanmax(sizes[: len(columns)])  # by the start
+    changes = {
+        name: case.signs[name] / max(size, transition)
+        for name, size in zip(names, sizes[is_there], strict=True)
+    }
+    found = columns[:, is_there] @ [*changes.values()]
+    for how in ((1e-16, 0.02), (1e-19, 0.001)):
+        right_end, right = smooth_runs.by_differences(case, changes, *how)
+        error = float(np.abs(found - right).max())
+        off = np.abs(end - right_end).max() / max(1.0, np.abs(right_end).max())
+        kind = "right" if error <= ALLOWED_IF_SMOOTH else "in air" if seed % 2 else "wrong"
+        kind = "wrong" if error > ALLOWED_IN_AIR else kind
+        verdict = Verdict(seed, 0, refused, error, kind, f"the end itself {off:.1e} off. {why}")
+        if kind == "right":
+            break
+    return verdict
+
+
 def judged(seed: int) -> Verdict:
-    """Hold a run against the reference."""
-    case = drawn(seed)
-    end, columns, why = by_pendcore(case)
+    """Hold a hybrid run against the reference in complex numbers."""
+    case = hybrid_runs.drawn(seed)
+    end, columns, why = hybrid_runs.by_pendcore(case)
     is_there = np.isfinite(columns).all(axis=0)
     names = [name for name, there in zip(case.changes, is_there, strict=True) if not there]
     if names and not why:
@@ -52,7 +86,7 @@ def judged(seed: int) -> Verdict:
     verdict = Verdict(seed, 0, 0, np.nan, "no reference", "it cannot tell what is held")
     for step in (0.02, 0.005, 0.00125):
         try:
-            right_end, right, events = by_complex_numbers(case, changes, step)
+            right_end, right, events = hybrid_runs.by_complex_numbers(case, changes, step)
         except (AssertionError, OverflowError, np.linalg.LinAlgError):
             continue
         error = float(np.abs(found - right).max() / max(1.0, np.abs(right).max()))
@@ -67,19 +101,23 @@ def judged(seed: int) -> Verdict:
 def main(arguments: list[str] | None = None) -> int:
     """Run a campaign."""
     parser = argparse.ArgumentParser(prog="derivatives.campaign")
+    parser.add_argument("runs", choices=["hybrid", "smooth"])
     parser.add_argument("--seeds", default="0:300", metavar="FIRST:END")
-    first, end = map(int, parser.parse_args(arguments).seeds.split(":"))
+    told = parser.parse_args(arguments)
+    first, end = map(int, told.seeds.split(":"))
     verdicts = []
     for seed in tqdm(range(first, end), disable=None):
-        verdicts.append(one := judged(seed))
-        if one.kind != "right":
+        verdicts.append(one := (judged if told.runs == "hybrid" else judged_smooth)(seed))
+        if one.kind != "right" or one.names:
             print(f"seed {one.seed}: {one.kind} ({one.error:.1e}): {one.told}", flush=True)
-    right = [one for one in verdicts if one.kind == "right"]
-    print(
-        f"{len(right)} of {len(verdicts)} right, with {sum(one.events for one in right)} events; "
-        f"the worst is {max((one.error for one in right), default=0.0):.1e} off, "
-        f"the median {np.median([one.error for one in right] or [0.0]):.1e}"
-    )
+    for kind in ("right", "in air"):
+        errors = [one.error for one in verdicts if one.kind == kind] or [0.0]
+        count = sum(one.kind == kind for one in verdicts)
+        events = sum(one.events for one in verdicts if one.kind == kind)
+        print(
+            f"{count} of {len(verdicts)} {kind}, with {events} events; "
+            f"the worst is {max(errors):.1e} off, the median {np.median(errors):.1e}"
+        )
     refused = sum(one.kind == "refused" for one in verdicts)
     names = sum(one.names for one in verdicts)
     print(f"{refused} were refused; at most a tenth may be; {names} names of others were")

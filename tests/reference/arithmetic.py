@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import mpmath  # type: ignore[import-untyped]
+import gmpy2
 import numpy as np
 
 Number = Any  # a float or a number of mpmath: whatever the arithmetic at hand makes
@@ -59,10 +59,12 @@ def eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
 
 
 def multiple_precision(digits: int) -> Arithmetic:
-    """Arithmetic with the given number of decimal digits; doubles are taken as they stand."""
-    context = mpmath.mp.clone()
-    context.dps = digits
+    """Arithmetic with at least so many decimal digits; doubles are taken as they stand.
 
+    All that is computed in a thread has as many digits as anything there has asked for.
+    """
+    context = gmpy2.get_context()
+    context.precision = max(context.precision, math.ceil(digits * math.log2(10)) + 4)
     return Arithmetic(
-        number=context.mpf, sin=context.sin, cos=context.cos, exp=context.exp, solve=eliminate
+        number=gmpy2.mpfr, sin=gmpy2.sin, cos=gmpy2.cos, exp=gmpy2.exp, solve=eliminate
     )

@@ -26,6 +26,11 @@ ROUNDING = 2e-15
 
 def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
     """One step of Gragg's rule, extrapolated to order 16."""
+    return midpoint_rules(f, t, y, h)[-1]
+
+
+def midpoint_rules(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Sequence[Any]:
+    """One step of the rule, extrapolated to the orders 2, 4, ..., 16."""
     rows: list[Any] = []
     for j in range(1, 9):
         substeps = 2 * j
@@ -36,7 +41,7 @@ def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
         for k, earlier in enumerate(rows[-1] if rows else [], 1):
             row.append(row[-1] + (row[-1] - earlier) / ((j / (j - k)) ** 2 - 1))
         rows.append(row)
-    return rows[-1][-1]
+    return rows[-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -47,14 +47,22 @@ class ViscousJoint(Law):
     damping: float
     damping2: float = 0.0
     damping3: float = 0.0
+    sign: int | None = None
+    """Of w, where one law holds for both."""
 
     def terms(self, instant: Instant) -> list[Number]:
         number, w = instant.arithmetic.number, instant.relative_rate(self.joint)
         return [
             -number(self.damping) * w,
-            -number(self.damping2) * w * abs(w),
+            -number(self.damping2) * w * (abs(w) if self.sign is None else self.sign * w),
             -number(self.damping3) * w**3,
         ]
+
+    def bends(self, instant: Instant) -> list[Number]:
+        return [instant.relative_rate(self.joint)]
+
+    def between_bends(self, signs: Sequence[int]) -> Law:
+        return replace(self, sign=signs[0])
 
     def act(self, instant: Instant, loads: Loads) -> None:
         for term in self.terms(instant):
@@ -106,6 +114,18 @@ class Motor(Law):
     pd: Mapping[str, float] | None = None
     limit: float = math.inf
 
+    def break_times(self) -> Sequence[float]:
+        return self.table["t"] if self.table is not None else ()
+
+    def bends(self, instant: Instant) -> list[Number]:
+        wanted, limit = sum(self.wanted(instant)), instant.arithmetic.number(self.limit)
+        return [limit - wanted, limit + wanted]
+
+    def between_bends(self, signs: Sequence[int]) -> Law:
+        if min(signs) > 0:
+            return replace(self, limit=math.inf)
+        return Motor(joint=self.joint, constant=self.limit * (1 if signs[0] < 0 else -1))
+
     def wanted(self, instant: Instant) -> list[Number]:
         number, t = instant.arithmetic.number, instant.t
         if self.constant is not None:
@@ -154,6 +174,8 @@ class RodDrag(Law):
     diameter: float
     air_density: float = 1.225
     wind: tuple[float, float] = (0.0, 0.0)
+    signs: Sequence[int] | None = None
+    """Of w at both ends of the rod, where one law holds for all."""
 
     def speed(self, instant: Instant, s: Number) -> Number:
         """Speed of a point of the rod against the wind, across the rod."""
@@ -161,24 +183,31 @@ class RodDrag(Law):
         nx, ny = instant.across(self.link)
         return nx * (point.vx - number(self.wind[0])) + ny * (point.vy - number(self.wind[1]))
 
+    def bends(self, instant: Instant) -> list[Number]:
+        return [self.speed(instant, 0), self.speed(instant, instant.bodies[self.link - 1].length)]
+
+    def between_bends(self, signs: Sequence[int]) -> Law:
+        return replace(self, signs=signs)
+
     def points(self, instant: Instant) -> Iterator[tuple[Number, Number]]:
-        """Points of the rod and the weights with which they count in an integral along it."""
-        number = instant.arithmetic.number
-        length = number(instant.bodies[self.link - 1].length)
-        start, end = self.speed(instant, 0), self.speed(instant, length)
-        ends = [number(0), length]
-        if start * end < 0:
-            ends.insert(1, length * start / (start - end))
+        """Points of the rod and their weights in an integral along it, with the sign of w there."""
+        number, (start, end) = instant.arithmetic.number, self.bends(instant)
+        ends = [number(0), number(instant.bodies[self.link - 1].length)]
+        signs = self.signs or [(w > 0) - (w < 0) for w in (start, end)]
+        if signs[0] * signs[1] < 0:
+            ends.insert(1, ends[1] * start / (start - end))
+        else:
+            signs = [signs[0] or signs[1]]
         offset = (number(3) / 5) ** number("0.5")
-        for a, b in pairwise(ends):
+        for (a, b), sign in zip(pairwise(ends), signs, strict=True):
             for x, weight in ((-offset, 5), (0, 8), (offset, 5)):
-                yield (a + b) / 2 + x * (b - a) / 2, number(weight) / 18 * (b - a)
+                yield (a + b) / 2 + x * (b - a) / 2, sign * number(weight) / 18 * (b - a)
 
     def force(self, instant: Instant, s: Number) -> Number:
-        """Force across the rod per length."""
+        """Force across the rod per length, but for the sign of w, which the weights have."""
         number, w = instant.arithmetic.number, self.speed(instant, s)
         product = number(self.air_density) * number(self.drag_coefficient) * number(self.diameter)
-        return -product / 2 * w * abs(w)
+        return -product / 2 * w**2
 
     def integral(self, instant: Instant, f: Callable[[Number], Number]) -> Number:
         """Integrate a function of the place along the rod."""
@@ -207,10 +236,7 @@ class RodDrag(Law):
             point = instant.point(self.link, s)
             return self.force(instant, s) * (nx * point.vx + ny * point.vy)
 
-        def loss(s: Number) -> Number:
-            return abs(self.force(instant, s) * self.speed(instant, s))
-
-        lost = self.integral(instant, loss)
+        lost = -self.integral(instant, lambda s: self.force(instant, s) * self.speed(instant, s))
         return {"drag": lost, "wind": self.integral(instant, power) + lost}
 
 
@@ -280,6 +306,9 @@ class DrivenPivot(Law):
     x: Mapping[str, float] | None = None
     y: Mapping[str, float] | None = None
     spline: Mapping[str, Sequence[float]] | None = None
+
+    def break_times(self) -> Sequence[float]:
+        return self.spline["t"] if self.spline is not None else ()
 
     def pivot(self, t: Number, arithmetic: Arithmetic) -> PivotMotion:
         if self.spline is not None:

@@ -33,6 +33,18 @@ class Law:
     def act(self, instant: Instant, loads: Loads) -> None:
         """Add forces and couples, inertia, constraints."""
 
+    def break_times(self) -> Sequence[float]:
+        """When the law is not analytic in time."""
+        return ()
+
+    def bends(self, instant: Instant) -> Sequence[Number]:
+        """Numbers at whose zeros the law is continuous, but not analytic."""
+        return ()
+
+    def between_bends(self, signs: Sequence[int]) -> Law:
+        """Return the analytic law that holds where the bends have these signs."""
+        return self
+
     def kinetic(self, instant: Instant) -> Number:
         """Kinetic energy besides that of the links, J."""
         return 0
@@ -56,9 +68,11 @@ class Rig:
     arithmetic: Arithmetic = DOUBLE
 
     def instant(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Instant:
-        """Where the chain is; the pivot is where it is driven to."""
-        pivots = [effect.pivot(t, self.arithmetic) for effect in self.effects]
-        driven = next((pivot for pivot in pivots if pivot is not None), AT_REST)
+        """Where the chain is; the pivot is where all that drives it has brought it."""
+        driven = AT_REST
+        for effect in self.effects:
+            if (moved := effect.pivot(t, self.arithmetic)) is not None:
+                driven = driven.and_so(moved)
         return Instant(
             bodies=self.bodies,
             gravity=self.gravity,
@@ -88,6 +102,12 @@ class Rig:
         instant = self.instant(t, q, qd)
         unknowns = self.equations(instant).solve(self.arithmetic)
         return motion_of(unknowns, self.bodies, q, qd, self.loads(instant), self.arithmetic)
+
+    def accelerations(
+        self, t: Number, q: Sequence[Number], qd: Sequence[Number]
+    ) -> Sequence[Number]:
+        """Return the angular accelerations of the links, rad/s^2, without what else is unknown."""
+        return self.equations(self.instant(t, q, qd)).solve(self.arithmetic)[: len(q)]
 
     def energy(self, t: Number, q: Sequence[Number], qd: Sequence[Number]) -> Energy:
         """Sum m v^2/2 + I w^2/2 and -m g y over the links, and what the effects store."""

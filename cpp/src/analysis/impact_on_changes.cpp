@@ -54,7 +54,7 @@ void refuse_name(const std::string& name, double t, const std::string& why, Eige
   if (!changes.col(column).allFinite()) return;
   changes.col(column).setConstant(std::numeric_limits<double>::quiet_NaN());
   told.append(told.empty() ? "" : "; ")
-      .append("sensitivities: none of \"" + name + "\" after t = " + text(t) + " s: " + why);
+      .append("sensitivities: none by \"" + name + "\" after t = " + text(t) + " s: " + why);
 }
 
 std::string ImpactOnChanges::strike(const WatchedChange& change, Matrix& changes,

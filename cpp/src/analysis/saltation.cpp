@@ -88,7 +88,7 @@ std::string Saltation::start(const WatchedChange& change, Matrix& changes) {
       const bool leaves = side != Side::none && angles[column] != 0.0;
       if (!turns && !leaves) continue;
       changes.col(column).setConstant(none);
-      told.append(told.empty() ? "sensitivities: none of \"" : ", \"")
+      told.append(told.empty() ? "sensitivities: none by \"" : ", \"")
           .append(equations_.names()[static_cast<std::size_t>(column)])
           .append("\": " + joint_name(j))
           .append(support.is_locked    ? " is locked, and this would turn it"
@@ -370,10 +370,12 @@ std::string Saltation::border(const WatchedChange& change) {
     const JointSupport& support = joints.supports()[j];
     if (support.is_locked) continue;
     const Hold& hold = joints.holds()[j];
+    const double natural = support.natural_speed * support.natural_speed;  // rad/s^2
     if (joints.is_held(j)) {
       const double room = std::min(torques[j] - hold.least, hold.most - torques[j]);
+      const double torque = std::max(joints.torque_size(j), joints.inertia(j) * natural);
       // Far beyond its limit, after a jump of the load, the joint is let go next.
-      if (std::abs(room) > rounding_of_rates * joints.torque_size(j)) continue;
+      if (std::abs(room) > rounding_of_rates * torque) continue;
     } else {
       const bool may_be_held =
           !support.friction_effects.empty() || joints.contact(j, q) != Side::none;
@@ -381,7 +383,8 @@ std::string Saltation::border(const WatchedChange& change) {
       const bool is_released =
           change.guard != nullptr && change.guard->joint == j && !change.guard->is_linear();
       if (is_released) continue;
-      if (std::abs(relative(f.data() + n_, j + 1)) > rounding_of_rates * size) continue;
+      const double acceleration = std::abs(relative(f.data() + n_, j + 1));
+      if (acceleration > rounding_of_rates * std::max(size, natural)) continue;
     }
     return "the torques on " + joint_name(j) + " only just hold it, or only just do not";
   }

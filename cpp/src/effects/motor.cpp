@@ -42,18 +42,13 @@ Table clipped_table(const Table& table, double limit) {
     if (i > 0 && !table.hold) {
       const double t_before = table.t[i - 1];
       const double before = table.torque[i - 1];
-      std::vector<double> meets;
-      for (const double edge : {-limit, limit}) {
-        if ((before - edge) * (torque - edge) < 0.0) {
-          meets.push_back(t_before + (t - t_before) * ((edge - before) / (torque - before)));
-        }
-      }
-      std::ranges::sort(meets);
-      for (const double meet : meets) {
+      const double first = torque > before ? -limit : limit;  // of the edges that it may meet
+      for (const double edge : {first, -first}) {
+        if (!((before - edge) * (torque - edge) < 0.0)) continue;
+        const double meet = t_before + (t - t_before) * ((edge - before) / (torque - before));
         if (!(meet > result.t.back() && meet < t)) continue;
         result.t.push_back(meet);
-        const double share = (meet - t_before) / (t - t_before);
-        result.torque.push_back(clipped(before + (torque - before) * share, limit));
+        result.torque.push_back(edge);
       }
     }
     result.t.push_back(t);

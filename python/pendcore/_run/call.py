@@ -93,7 +93,8 @@ def resumed(
     if result.sensitivity_names:
         raise ValueError(
             f"sensitivities = {list(result.sensitivity_names)!r}: are not continued: simulate from "
-            "the start to the later end, or from here with sensitivities to q0 and qd0"
+            "the start to the later end; or from here by all of q0 and qd0, too, whose matrix "
+            "times the sensitivities there, plus those that the second run has, are the whole run's"
         )
     report = callback(progress)
     run = result._run.resume(t_end, t_eval, max_steps, time_limit, report)

@@ -77,6 +77,11 @@ def _in_order(solution: Solution, t: Floats) -> tuple[Floats, npt.NDArray[np.int
     return (times, places) if end >= start else (times[::-1], len(times) - 1 - places)
 
 
+def _last_rows(places: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Return the last row that a run has kept of each time: at a jump, the one after it."""
+    return np.append(np.flatnonzero(np.diff(places)), len(places) - 1)
+
+
 def errors_of(solution: Solution) -> Floats:
     """See `Solution.sensitivity_errors`."""
     known = sensitivities_there(solution)
@@ -90,8 +95,7 @@ def errors_of(solution: Solution) -> Floats:
     )  # fmt: skip
     rows = np.arange(len(times))
     rows[-1] += _of_the_nearest_state(solution.y[:, -1], other.y[:, len(times) - 1 :])
-    latest = np.append(np.flatnonzero(np.diff(places)), len(places) - 1)  # after a jump
-    errors: Floats = np.abs(known[latest] - watch.values[rows]).max(axis=1)
+    errors: Floats = np.abs(known[_last_rows(places)] - watch.values[rows]).max(axis=1)
     # The other run has an event a little earlier or later: at its very time, one of the two is
     # before it. There, the error is that of the times around.
     errors[1:-1] = np.minimum(errors[1:-1], np.maximum(errors[:-2], errors[2:]))
@@ -107,7 +111,8 @@ def valid_until_of(solution: Solution, limit: float) -> Floats:
     start, _ = solution.t_span
     if not len(solution.t):
         return np.full(len(solution.sensitivity_names), start)
-    size = np.maximum.accumulate(np.abs(known).max(axis=1), axis=0)
+    _, places = _in_order(solution, solution.t)
+    size = np.maximum.accumulate(np.abs(known).max(axis=1), axis=0)[_last_rows(places)][places]
     values = solution.scene.parameters()
     scale = np.array([abs(values.get(name, 1.0)) or 1.0 for name in solution.sensitivity_names])
     is_past = ~(errors <= np.maximum(share * size, SMALLEST / scale))  # NaN is past

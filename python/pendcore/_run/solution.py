@@ -51,7 +51,7 @@ class Solution:
     """The result of `simulate`.
 
     Call it, ``sol(t)``, for the state between the steps; ``t``, ``q`` and ``qd`` are what it kept.
-    It pickles; `save` and `load` keep it all.
+    It pickles; `save` and `load` keep it all but estimates of errors, which are made again.
 
     Attributes
     ----------

@@ -359,7 +359,10 @@ class Scene:
         driven, names = linearization.known_inputs(inputs)
         if torques is not None:
             if any(isinstance(one, str) for one in driven):
-                raise ValueError(f"torques: are of joints, and the inputs are {', '.join(names)}")
+                raise ValueError(
+                    f"torques: are of joints, and the inputs are {', '.join(names)}: give torques "
+                    "that are held beside other inputs as effects, Motor(joint, constant=...)"
+                )
             torques = finite_array("torques", torques, "N m")
         found = self._compiled.linearize(t, q, qd, driven, torques)
         if found is None:  # a state of plain numbers costs three microseconds, as in a loop

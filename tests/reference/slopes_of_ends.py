@@ -1,0 +1,127 @@
+"""Ends of smooth runs that begin beside one another, for differences in many digits.
+
+Between two bends, where abs() or a limit changes its branch, the laws are analytic. All runs take
+the same steps, but each step to a bend ends where the run's own is: so an end is a smooth function
+of what is changed, and so is its error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.complex_runs import midpoint_rules
+from reference.rig import Rig
+
+NEAR = 1e-28
+"""A number this small is zero."""
+LITTLE = 1e-18
+"""The time over which a bend is differentiated, s."""
+
+
+class Side:
+    """One of the runs, at a time, and the signs that the bends of each of its laws have there."""
+
+    def __init__(self, rig: Rig, t: Any, y: NDArray[Any]) -> None:
+        self.rig, self.t, self.y = rig, t, y
+        self.in_force = rig
+        self.take_signs([1 if x > 0 else -1 for x in self.bends(t, y)])
+
+    def take_signs(self, signs: Sequence[int]) -> None:
+        self.signs = np.array(signs)
+        rest = iter(signs)
+        instant = self.rig.instant(self.t, *np.split(self.y, 2))
+        of_each = [[next(rest) for _ in law.bends(instant)] for law in self.rig.effects]
+        laws = [law.between_bends(one) for law, one in zip(self.rig.effects, of_each, strict=True)]
+        self.in_force = replace(self.rig, effects=laws)
+        self.last: Any = None
+
+    def rates(self, t: Any, y: Any) -> NDArray[Any]:
+        q, qd = np.split(y, 2)
+        return np.array([*qd, *self.in_force.accelerations(t, q, qd)])
+
+    def bends(self, t: Any, y: Any) -> NDArray[Any]:
+        """Return the numbers whose signs say which law is in force."""
+        instant = self.rig.instant(t, *np.split(y, 2))
+        return np.array([x for law in self.rig.effects for x in law.bends(instant)])
+
+    def after(self, h: Any) -> NDArray[Any]:
+        """Return the state after a step, whose last value is kept."""
+        if self.last is None or self.last[0] != h:
+            self.last = h, midpoint_rules(self.rates, self.t, self.y, h)
+        return self.last[1][-1]
+
+    def error(self, h: Any) -> float:
+        """Return the error of the step of order 14 that is part of a step."""
+        try:
+            end, (_, rules) = self.after(h), self.last
+        except OverflowError:
+            return np.inf
+        return float(np.abs(end - rules[-2]).max() / max(1, np.abs(end).max()))
+
+    def to_bend(self, k: int, h: Any) -> Any:
+        """Return how far away the zero of a bend is, by Newton's rule from h."""
+        for _ in range(12):
+            y = self.after(h)
+            here = self.bends(self.t + h, y)[k]
+            if abs(here) < NEAR:
+                return h
+            ahead = y + LITTLE * self.rates(self.t + h, y)
+            h -= here * LITTLE / (self.bends(self.t + h + LITTLE, ahead)[k] - here)
+        raise AssertionError
+
+    def move(self, h: Any, k: int | None) -> None:
+        """Go on by a step, at the end of which a bend may change its sign."""
+        self.y = self.after(h)
+        self.t += h
+        self.last = None
+        if k is not None:
+            self.signs[k] *= -1
+            self.take_signs(self.signs)
+
+
+def ends_beside(
+    starts: Sequence[tuple[Rig, NDArray[Any]]],
+    span: tuple[Any, Any],
+    tolerance: float,
+    longest: float = 0.02,
+) -> list[NDArray[Any]]:
+    """Return the states at the end of runs of some rig, from some state each.
+
+    A bend that changes its sign twice within the longest step, s, is not seen.
+    """
+    begin, end = span
+    sides = [Side(rig, begin, y) for rig, y in starts]
+    first = sides[0]
+    breaks = {x for law in first.rig.effects for x in law.break_times() if begin < x < end}
+    step: Any = longest
+    for stop in [*sorted(breaks), end]:
+        while first.t < stop:
+            to = min(first.t + step, stop)
+            share = (tolerance / max(first.error(to - first.t), tolerance * 1e-6)) ** (1 / 15)
+            if not share >= 0.8:
+                step = (0.9 * share if share > 0.2 else 0.2) * (to - first.t)
+                continue
+            h, k = step_to_first_bend(first, to - first.t)
+            for side in sides:
+                side.move(to - side.t if k is None else side.to_bend(k, h), k)
+            step = min(min(0.9 * share, 2.0) * step, longest)
+    return [side.y for side in sides]
+
+
+def step_to_first_bend(side: Side, h: Any) -> tuple[Any, int | None]:
+    """Return how long a step is up to the first bend within, and its number."""
+    k, before = None, side.bends(side.t, side.y)
+    for _ in range(20):
+        after = side.bends(side.t + h, side.after(h))
+        crossed = np.flatnonzero((after * side.signs < 0) & (abs(after) > NEAR))
+        if not len(crossed):
+            return h, k
+        share = {j: before[j] / (before[j] - after[j]) for j in crossed}
+        k = min(share, key=lambda j: share[j])
+        h = side.to_bend(k, h * share[k])
+    raise AssertionError
