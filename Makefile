@@ -216,7 +216,7 @@ PYTHONPATH=tests python -m true_error.campaign --seeds $(SEEDS) $(FAMILIES:%=--f
     --record $(or $(RECORD),out/true_error/record.json) $(PAGE:%=--page %)
 endef
 
-# Derivatives against complex numbers, of hybrid runs, or against forty digits, of smooth ones; SEEDS=0:300 unless told.
+# Derivatives of hybrid runs against complex numbers, of smooth runs against forty digits; SEEDS=0:300 unless told.
 RUNS ?= hybrid
 define CAMPAIGN_derivatives
 PYTHONPATH=tests:tests/models python -m derivatives.campaign $(RUNS) --seeds $(if $(filter file,$(origin SEEDS)),0:300,$(SEEDS))

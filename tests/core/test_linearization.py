@@ -191,7 +191,7 @@ def test_a_limit_of_a_table_has_its_slope(limit: float) -> None:
 
 @pytest.mark.parametrize("limit", np.linspace(0.31, 2.31, 21))
 def test_a_limit_has_its_slope_where_a_table_is_short(limit: float) -> None:
-    """What rounding leaves of a torque that is cut, over a few milliseconds, was once a corner."""
+    """Clipped at both ends, a piece of milliseconds was off the limit by rounding: a corner."""
     table = E.Table(t=(0, 0.077190335928, 0.080750201317, 1), torque=(-0.5, -2.4659446, 0.06, 0.1))
     scene = TEXTBOOK.replace(effects=[E.Motor(joint=1, table=table, limit=limit)])
     B = scene.linearize(UPRIGHT, 0.0, 0.0772, inputs=["effect[1].limit", "torque[1]"]).B

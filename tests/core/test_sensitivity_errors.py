@@ -155,10 +155,24 @@ def test_a_name_that_moves_nothing_is_right_to_the_end() -> None:
 
 
 def test_a_name_that_acts_from_an_impact_on_is_right_from_there() -> None:
-    """Just before the impact, the derivative by it is zero, and its error is none of zero's."""
+    """Just before it the derivative is zero; the error kept for that time is the one after it."""
     names = ["q0[1]", "effect[1].restitution", "effect[1].range.upper", "effect[2].coulomb"]
     sol = pc.simulate(BUMPY, (0, 2), [0.3, 0.5], [0.0, 4.0], sensitivities=names)
     np.testing.assert_array_equal(sol.sensitivities_valid_until(1e-6), [2.0] * 4)
+
+
+@pytest.mark.parametrize(("load", "slides"), [(1.0001, True), (0.9999, False)])
+def test_a_stiff_spring_does_not_hide_what_friction_holds(load: float, slides: bool) -> None:
+    """A ten thousandth of a limit is no rounding, whatever a spring would do a radian farther."""
+    effects = [
+        E.DryJointFriction(joint=1, coulomb=1.0), E.Motor(joint=1, constant=load),
+        E.TorsionalSpring(joint=1, stiffness=1e5),
+    ]  # fmt: skip
+    rod = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], gravity=0.0, effects=effects)
+    sol = pc.simulate(rod, (0, 1e-3), 0.0, 0.0, sensitivities=["torque[1]"], store="end")
+    assert sol.sensitivities is not None
+    assert (sol.sensitivities[-1, 0, 0] > 0) == slides
+    assert np.isfinite(sol.sensitivities).all()
 
 
 def test_a_graze_ends_them_and_so_does_the_run_of_their_error() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from derivatives import smooth_runs
 from derivatives.campaign import ALLOWED_IF_SMOOTH, judged_smooth
+from reference.newton_euler import uniform_rod
 
 LONG_SWEEP = [*range(0, 60, 2), 1, 5, 7]
 
@@ -31,3 +32,19 @@ def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(smooth_runs, "by_pendcore", spoilt)
     assert judged_smooth(28).kind == "wrong"
+
+
+@pytest.mark.parametrize("wind", [(2.0, 0.0), (0.0, 3.0)])
+@pytest.mark.parametrize("t_end", [0.3, 0.5])
+def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> None:
+    """Where an end of the rod turns into the wind, the changes have a kink."""
+    names = ["q0[1]", "qd0[2]", "gravity", "effect[1].diameter", "effect[1].wind.x"]
+    drag = {"link": 2, "drag_coefficient": 1.5, "diameter": 0.3, "air_density": 4.0, "wind": wind}
+    case = smooth_runs.SmoothCase(
+        bodies=[uniform_rod(1.0, 1.0), uniform_rod(0.5, 0.8)], gravity=9.8,
+        described=[("rod_drag", drag)], q0=[0.3, 1.0], qd0=[4.0, -6.0], t_end=t_end,
+        signs=dict.fromkeys(names, 1),
+    )  # fmt: skip
+    _, found, _ = smooth_runs.by_pendcore(case)
+    _, right = smooth_runs.by_differences(case, dict.fromkeys(names, 1.0), 1e-17, 0.01)
+    assert np.abs(found.sum(axis=1) - right).max() <= 4e-13 * np.abs(found).max()

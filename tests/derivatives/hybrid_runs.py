@@ -155,11 +155,18 @@ def by_complex_numbers(
 
 def by_pendcore(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], str]:
     """Return the state, its derivative by each name, and what is said of those that are missing."""
+    return told_by_pendcore(case, [*case.changes], rtol=1e-13, atol=1e-15)
+
+
+def told_by_pendcore(
+    case: Any, names: list[str], **tolerances: float
+) -> tuple[NDArray[Any], NDArray[Any], str]:
+    """Simulate a case to its end."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", pc.PendcoreWarning)
         sol = pc.simulate(
-            case.scene, (0, case.t_end), case.q0, case.qd0, rtol=1e-13, atol=1e-15, store="end",
-            sensitivities=list(case.changes),
+            case.scene, (0, case.t_end), case.q0, case.qd0, store="end", sensitivities=names,
+            **tolerances,
         )  # fmt: skip
     assert sol.sensitivities is not None
     why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))

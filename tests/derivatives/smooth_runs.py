@@ -1,13 +1,12 @@
 """Random runs with all smooth effects, and the derivatives of their ends.
 
-Those of odd seeds are in air. Its drag has kinks where a point of a rod turns into the wind, over
+Those of odd seeds are in air. Its drag has kinks where an end of a rod turns into the wind, over
 which a run steps: there the motion itself is known less closely.
 """
 
 from __future__ import annotations
 
 import random
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +18,8 @@ from reference.effects import Described
 from reference.named_numbers import Numbers
 from reference.newton_euler import Body
 from reference.slopes_of_ends import ends_beside
+
+from derivatives.hybrid_runs import told_by_pendcore
 
 MANY = multiple_precision(40)
 CHANGE = MANY.number(10) ** -12
@@ -36,6 +37,10 @@ class SmoothCase:
     t_end: float
     signs: dict[str, int]
     """With which sign each name is changed; of these alone there are derivatives."""
+
+    @property
+    def is_in_air(self) -> bool:
+        return any(kind == "rod_drag" for kind, _ in self.described)
 
     @property
     def scene(self) -> pc.Scene:
@@ -103,15 +108,7 @@ def drawn(seed: int) -> SmoothCase:
 
 def by_pendcore(case: SmoothCase) -> tuple[NDArray[Any], NDArray[Any], str]:
     """Return the state, its derivative by each name, and what is said of those that are missing."""
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", pc.PendcoreWarning)
-        sol = pc.simulate(
-            case.scene, (0, case.t_end), case.q0, case.qd0, rtol=1e-14, atol=1e-17, store="end",
-            sensitivities=list(case.signs),
-        )  # fmt: skip
-    assert sol.sensitivities is not None
-    why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))
-    return sol.y[:, -1], sol.sensitivities[-1], why
+    return told_by_pendcore(case, [*case.signs], rtol=1e-14, atol=1e-17)
 
 
 def by_differences(

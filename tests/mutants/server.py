@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-OFTEN_IMPORTED = ("matplotlib.pyplot", "mpmath", "numpy", "sympy", "tqdm")
+OFTEN_IMPORTED = ("gmpy2", "matplotlib.pyplot", "mpmath", "numpy", "sympy", "tqdm")
 NOT_ENDED = -99
 """The exit code of a run that was not over in time."""
 UNKNOWN = 0.3

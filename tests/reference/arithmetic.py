@@ -11,7 +11,7 @@ from typing import Any
 import gmpy2
 import numpy as np
 
-Number = Any  # a float or a number of mpmath: whatever the arithmetic at hand makes
+Number = Any  # a float or a number of gmpy2: whatever the arithmetic at hand makes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,8 @@ def eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
 def multiple_precision(digits: int) -> Arithmetic:
     """Arithmetic with at least so many decimal digits; doubles are taken as they stand.
 
-    All that is computed in a thread has as many digits as anything there has asked for.
+    All that is computed in this thread has as many digits as anything in it has asked for; another
+    thread has doubles.
     """
     context = gmpy2.get_context()
     context.precision = max(context.precision, math.ceil(digits * math.log2(10)) + 4)

@@ -39,7 +39,7 @@ def midpoint_rules(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Sequence[An
             before, here = here, before + 2 * step * f(t + k * step, here)
         row = [(before + here + step * f(t + h, here)) / 2]
         for k, earlier in enumerate(rows[-1] if rows else [], 1):
-            row.append(row[-1] + (row[-1] - earlier) / ((j / (j - k)) ** 2 - 1))
+            row.append(row[-1] + (row[-1] - earlier) * (j - k) ** 2 / (k * (2 * j - k)))
         rows.append(row)
     return rows[-1]
 

@@ -22,7 +22,7 @@ class PivotMotion(NamedTuple):
     acceleration: Vector = (0, 0)
     size: Number = 0
 
-    def and_so(self, other: PivotMotion) -> PivotMotion:
+    def plus(self, other: PivotMotion) -> PivotMotion:
         """Return both motions, one added to the other."""
         pairs = zip(self[:3], other[:3], strict=True)
         added = [(a[0] + b[0], a[1] + b[1]) for a, b in pairs]

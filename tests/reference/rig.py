@@ -72,7 +72,7 @@ class Rig:
         driven = AT_REST
         for effect in self.effects:
             if (moved := effect.pivot(t, self.arithmetic)) is not None:
-                driven = driven.and_so(moved)
+                driven = driven.plus(moved)
         return Instant(
             bodies=self.bodies,
             gravity=self.gravity,

@@ -1,8 +1,8 @@
 """Ends of smooth runs that begin beside one another, for differences in many digits.
 
 Between two bends, where abs() or a limit changes its branch, the laws are analytic. All runs take
-the same steps, but each step to a bend ends where the run's own is: so an end is a smooth function
-of what is changed, and so is its error.
+the same steps, but a step to a bend ends at that run's own bend: so an end is a smooth function of
+what is changed, and so is its error.
 """
 
 from __future__ import annotations
@@ -50,18 +50,22 @@ class Side:
         return np.array([x for law in self.rig.effects for x in law.bends(instant)])
 
     def after(self, h: Any) -> NDArray[Any]:
-        """Return the state after a step, whose last value is kept."""
+        """Return the state after a step."""
+        return self.rules(h)[-1]
+
+    def rules(self, h: Any) -> Any:
+        """Return what all rules make of a step, and keep it for the next call."""
         if self.last is None or self.last[0] != h:
             self.last = h, midpoint_rules(self.rates, self.t, self.y, h)
-        return self.last[1][-1]
+        return self.last[1]
 
     def error(self, h: Any) -> float:
-        """Return the error of the step of order 14 that is part of a step."""
+        """Return by how much the rules of order 16 and 14 differ; infinite where numbers end."""
         try:
-            end, (_, rules) = self.after(h), self.last
-        except OverflowError:
+            *_, before, end = self.rules(h)
+        except OverflowError:  # of a double in a sum of sizes
             return np.inf
-        return float(np.abs(end - rules[-2]).max() / max(1, np.abs(end).max()))
+        return float(np.abs(end - before).max() / max(1, np.abs(end).max()))
 
     def to_bend(self, k: int, h: Any) -> Any:
         """Return how far away the zero of a bend is, by Newton's rule from h."""
@@ -72,7 +76,7 @@ class Side:
                 return h
             ahead = y + LITTLE * self.rates(self.t + h, y)
             h -= here * LITTLE / (self.bends(self.t + h + LITTLE, ahead)[k] - here)
-        raise AssertionError
+        raise AssertionError("a bend is not found: it may only be touched")
 
     def move(self, h: Any, k: int | None) -> None:
         """Go on by a step, at the end of which a bend may change its sign."""
@@ -88,7 +92,7 @@ def ends_beside(
     starts: Sequence[tuple[Rig, NDArray[Any]]],
     span: tuple[Any, Any],
     tolerance: float,
-    longest: float = 0.02,
+    longest: float,
 ) -> list[NDArray[Any]]:
     """Return the states at the end of runs of some rig, from some state each.
 
@@ -124,4 +128,4 @@ def step_to_first_bend(side: Side, h: Any) -> tuple[Any, int | None]:
         share = {j: before[j] / (before[j] - after[j]) for j in crossed}
         k = min(share, key=lambda j: share[j])
         h = side.to_bend(k, h * share[k])
-    raise AssertionError
+    raise AssertionError("a step has too many bends")

@@ -370,12 +370,13 @@ std::string Saltation::border(const WatchedChange& change) {
     const JointSupport& support = joints.supports()[j];
     if (support.is_locked) continue;
     const Hold& hold = joints.holds()[j];
-    const double natural = support.natural_speed * support.natural_speed;  // rad/s^2
+    // Weight, motors, and springs at this angle, N m: natural_speed counts springs per radian.
+    const double acting = joints.inertia(j) * support.natural_speed * support.natural_speed +
+                          support.stiffness * (size_of_relative(q, j + 1) - 1.0);
     if (joints.is_held(j)) {
       const double room = std::min(torques[j] - hold.least, hold.most - torques[j]);
-      const double torque = std::max(joints.torque_size(j), joints.inertia(j) * natural);
       // Far beyond its limit, after a jump of the load, the joint is let go next.
-      if (std::abs(room) > rounding_of_rates * torque) continue;
+      if (std::abs(room) > rounding_of_rates * std::max(joints.torque_size(j), acting)) continue;
     } else {
       const bool may_be_held =
           !support.friction_effects.empty() || joints.contact(j, q) != Side::none;
@@ -383,8 +384,8 @@ std::string Saltation::border(const WatchedChange& change) {
       const bool is_released =
           change.guard != nullptr && change.guard->joint == j && !change.guard->is_linear();
       if (is_released) continue;
-      const double acceleration = std::abs(relative(f.data() + n_, j + 1));
-      if (acceleration > rounding_of_rates * std::max(size, natural)) continue;
+      const double torque = joints.inertia(j) * std::abs(relative(f.data() + n_, j + 1));
+      if (torque > rounding_of_rates * std::max(joints.inertia(j) * size, acting)) continue;
     }
     return "the torques on " + joint_name(j) + " only just hold it, or only just do not";
   }

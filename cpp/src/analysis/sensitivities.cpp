@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
 #include "analysis/changes_by_series.hpp"
 #include "analysis/collocation_kernels.hpp"
+#include "analysis/kinks_of_drag.hpp"
 #include "analysis/saltation.hpp"
 #include "arithmetic/epsilon.hpp"
 #include "arithmetic/floating_point_environment.hpp"
@@ -28,7 +30,10 @@ constexpr double most_tolerance = 1e-8;
 
 struct Sensitivities::Variation {
   Variation(const Scene& scene, const std::vector<std::string>& names)
-      : equations(scene, names), n(equations.links()), now(equations.changes_of_start()) {}
+      : equations(scene, names),
+        kinks(equations.scene()),
+        n(equations.links()),
+        now(equations.changes_of_start()) {}
 
   void start(double t, std::span<const double> y);
   void take(const WatchedStep& step);
@@ -52,6 +57,7 @@ struct Sensitivities::Variation {
   void take_back_last() { values.resize(values.size() - static_cast<std::size_t>(now.size())); }
 
   VariationalEquations equations;
+  KinksOfDrag kinks;
   std::optional<Saltation> saltation{};  ///< of a scene whose laws change
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
@@ -277,6 +283,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   if (saltation && !is_over) misses = saltation->near_misses(step);
   bool by_series = true;
   double from = 0.0;  // where the changes are, if they go on by collocation
+  std::optional<std::vector<double>> kinks_ahead;
   const auto has_followed = [&](double to) {
     by_series = by_series && follow_by_series(step, to, from);
     return by_series;
@@ -286,8 +293,15 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
     if (has_followed(to)) {
       series.evaluate(since + to * step.h, now);
     } else if (to > from) {
-      advance(step, from, to, 0);
-      from = to;
+      if (!kinks_ahead) kinks_ahead = kinks.find(step, t_start);
+      std::vector<double> ends;
+      std::ranges::copy_if(*kinks_ahead, std::back_inserter(ends),
+                           [&](double kink) { return from < kink && kink < to; });
+      ends.push_back(to);
+      for (const double end : ends) {
+        if (!is_over) advance(step, from, end, 0);
+        from = end;
+      }
     }
   };
   const auto pass_misses = [&](double to) {

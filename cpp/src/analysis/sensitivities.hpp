@@ -6,9 +6,10 @@
 /// (changes_by_series.hpp), in steps of their own. Where they have none, or where a step of the run
 /// would take many, the rest of that step is a linear system: d(dqd)/dt is the polynomial that
 /// holds at the points of a Gauss quadrature (gauss_collocation.hpp), along the run's dense output.
-/// A part in which the polynomial has not converged is halved, again and again at a kink; where it
-/// never converges, there are no derivatives from there on (NaN). Where laws change, the changes go
-/// on by their saltation (saltation.hpp), or are refused.
+/// A part ends where drag has a kink (kinks_of_drag.hpp). One in which the polynomial has not
+/// converged is halved, again and again at another kink; where it never converges, there are no
+/// derivatives from there on (NaN). Where laws change, the changes go on by their saltation
+/// (saltation.hpp), or are refused.
 ///
 /// Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), I.14, II.7.
 /// Cost: that of the series; or for each step s Jacobians, O(n^3 s^3), and for each parameter s

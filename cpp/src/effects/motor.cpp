@@ -48,7 +48,7 @@ Table clipped_table(const Table& table, double limit) {
         const double meet = t_before + (t - t_before) * ((edge - before) / (torque - before));
         if (!(meet > result.t.back() && meet < t)) continue;
         result.t.push_back(meet);
-        result.torque.push_back(edge);
+        result.torque.push_back(edge);  // exactly: a clipped piece has no slope, by rounding either
       }
     }
     result.t.push_back(t);

@@ -93,8 +93,9 @@ def resumed(
     if result.sensitivity_names:
         raise ValueError(
             f"sensitivities = {list(result.sensitivity_names)!r}: are not continued: simulate from "
-            "the start to the later end; or from here by all of q0 and qd0, too, whose matrix "
-            "times the sensitivities there, plus those that the second run has, are the whole run's"
+            "the start to the later end; or from here with all q0[i] and qd0[i] among the names: "
+            "by a parameter or a start, the whole run's are the second run's plus its matrix by "
+            "q0 and qd0 times those at the end of the first"
         )
     report = callback(progress)
     run = result._run.resume(t_end, t_eval, max_steps, time_limit, report)
