@@ -95,8 +95,8 @@ SENSITIVITIES = RunOption(
     'Names of what the run depends on: ``"q0[1]"``, ``"qd0[2]"``, ``"torque[1]"``, ``"pivot.x"`` '
     "(a constant acceleration, m/s^2), or any of `Scene.parameters`. ``sol.sensitivities`` has the "
     "derivatives of the states by them, from the variational equations along the run, through "
-    "impacts, stick and release; a `pendcore.effects.User` is differentiated by central "
-    "differences, to some ten digits.",
+    "impacts, stick and release, or NaN from where there are none on, with a warning that says "
+    "why; a `pendcore.effects.User` is differentiated by central differences, to some ten digits.",
     type="iterable of str",
     if_none="no derivatives are found",
 )

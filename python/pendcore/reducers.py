@@ -168,7 +168,8 @@ class Sensitivities(Reducer):
     They have the bits of ``simulate(sensitivities=names)``, at each member's own values. Members
     run one by one in each thread, not in lanes. NaN stands where there is no derivative: in members
     that fail or are not run, and where the motion has none after some time, of which
-    `Ensemble.member` warns. ``print(found)`` counts the members that have all.
+    `Ensemble.member` warns. ``print(found)`` counts the members that have all; `Ensemble.resolved`
+    says of those that have none, in both runs, that the two agree.
 
     Parameters
     ----------

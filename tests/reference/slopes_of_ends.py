@@ -78,14 +78,15 @@ class Side:
             h -= here * LITTLE / (self.bends(self.t + h + LITTLE, ahead)[k] - here)
         raise AssertionError("a bend is not found: it may only be touched")
 
-    def move(self, h: Any, k: int | None) -> None:
-        """Go on by a step, at the end of which a bend may change its sign."""
-        self.y = self.after(h)
-        self.t += h
-        self.last = None
-        if k is not None:
-            self.signs[k] *= -1
-            self.take_signs(self.signs)
+    def move(self, to: Any) -> None:
+        """Go on to a time."""
+        self.y, self.t, self.last = self.after(to - self.t), to, None
+
+    def move_to_bend(self, k: int, h: Any) -> None:
+        """Go on to the zero of a bend that is about h away, where it changes its sign."""
+        self.move(self.t + self.to_bend(k, h))
+        self.signs[k] *= -1
+        self.take_signs(self.signs)
 
 
 def ends_beside(
@@ -103,7 +104,7 @@ def ends_beside(
     first = sides[0]
     breaks = {x for law in first.rig.effects for x in law.break_times() if begin < x < end}
     step: Any = longest
-    for stop in [*sorted(breaks), end]:
+    for stop in [*map(first.rig.arithmetic.number, sorted(breaks)), end]:
         while first.t < stop:
             to = min(first.t + step, stop)
             share = (tolerance / max(first.error(to - first.t), tolerance * 1e-6)) ** (1 / 15)
@@ -111,8 +112,12 @@ def ends_beside(
                 step = (0.9 * share if share > 0.2 else 0.2) * (to - first.t)
                 continue
             h, k = step_to_first_bend(first, to - first.t)
+            to = to if h == to - first.t else first.t + h
             for side in sides:
-                side.move(to - side.t if k is None else side.to_bend(k, h), k)
+                if k is None:
+                    side.move(to)
+                else:
+                    side.move_to_bend(k, h)
             step = min(min(0.9 * share, 2.0) * step, longest)
     return [side.y for side in sides]
 
@@ -120,12 +125,15 @@ def ends_beside(
 def step_to_first_bend(side: Side, h: Any) -> tuple[Any, int | None]:
     """Return how long a step is up to the first bend within, and its number."""
     k, before = None, side.bends(side.t, side.y)
-    for _ in range(20):
+    for _ in range(60):
         after = side.bends(side.t + h, side.after(h))
         crossed = np.flatnonzero((after * side.signs < 0) & (abs(after) > NEAR))
         if not len(crossed):
             return h, k
         share = {j: before[j] / (before[j] - after[j]) for j in crossed}
         k = min(share, key=lambda j: share[j])
-        h = side.to_bend(k, h * share[k])
+        if abs(before[k]) < NEAR:  # it has just been passed, and is passed once more within the step
+            h, k = h / 2, None
+        else:
+            h = side.to_bend(k, h * share[k])
     raise AssertionError("a step has too many bends")
