@@ -132,7 +132,7 @@ def step_to_first_bend(side: Side, h: Any) -> tuple[Any, int | None]:
             return h, k
         share = {j: before[j] / (before[j] - after[j]) for j in crossed}
         k = min(share, key=lambda j: share[j])
-        if abs(before[k]) < NEAR:  # it has just been passed, and is passed once more within the step
+        if abs(before[k]) < NEAR:  # just passed, and once more within the step
             h, k = h / 2, None
         else:
             h = side.to_bend(k, h * share[k])
