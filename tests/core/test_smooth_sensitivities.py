@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from derivatives import smooth_runs
+from derivatives import campaign
 from derivatives.campaign import ALLOWED_IF_SMOOTH, judged_smooth
+from derivatives.random_run import RandomRun, by_pendcore
+from derivatives.smooth_runs import by_differences
 from reference.newton_euler import uniform_rod
 
-LONG_SWEEP = [*range(0, 60, 2), 1, 5, 7]
+SEEDS = [*range(0, 60, 2), 1, 5, 7]
 
 
 @pytest.mark.few_cases
-@pytest.mark.parametrize("seed", LONG_SWEEP)
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_random_run_has_its_derivatives(seed: int) -> None:
-    """`make campaign OF=derivatives RUNS=smooth` has a thousand."""
+    """`make campaign OF=derivatives RUNS=smooth` has as many as are asked for."""
     verdict = judged_smooth(seed)
     assert (verdict.kind, verdict.names) == ("right", 0), verdict
 
@@ -22,15 +24,14 @@ def test_a_random_run_has_its_derivatives(seed: int) -> None:
 @pytest.mark.parametrize("column", [0, 5, -1])
 def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """A share of 3e-12 in any column is too much."""
-    by_pendcore = smooth_runs.by_pendcore
 
-    def spoilt(case: smooth_runs.SmoothCase) -> tuple[np.ndarray, np.ndarray, str]:
-        end, columns, why = by_pendcore(case)
+    def spoilt(case: RandomRun, **how: float) -> tuple[np.ndarray, np.ndarray, str]:
+        end, columns, why = by_pendcore(case, **how)
         size = max(np.abs(columns[:, column]).max(), np.abs(columns[:, : len(columns)]).max())
         columns[0, column] += 3 * ALLOWED_IF_SMOOTH * size
         return end, columns, why
 
-    monkeypatch.setattr(smooth_runs, "by_pendcore", spoilt)
+    monkeypatch.setattr(campaign, "by_pendcore", spoilt)
     assert judged_smooth(28).kind == "wrong"
 
 
@@ -40,11 +41,11 @@ def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> 
     """Where an end of the rod turns into the wind, the changes have a kink."""
     names = ["q0[1]", "qd0[2]", "gravity", "effect[1].diameter", "effect[1].wind.x"]
     drag = {"link": 2, "drag_coefficient": 1.5, "diameter": 0.3, "air_density": 4.0, "wind": wind}
-    case = smooth_runs.SmoothCase(
+    case = RandomRun(
         bodies=[uniform_rod(1.0, 1.0), uniform_rod(0.5, 0.8)], gravity=9.8,
         described=[("rod_drag", drag)], q0=[0.3, 1.0], qd0=[4.0, -6.0], t_end=t_end,
-        signs=dict.fromkeys(names, 1),
+        changes=dict.fromkeys(names, 1.0),
     )  # fmt: skip
-    _, found, _ = smooth_runs.by_pendcore(case)
-    _, right = smooth_runs.by_differences(case, dict.fromkeys(names, 1.0), 1e-17, 0.01)
+    _, found, _ = by_pendcore(case, rtol=1e-14, atol=1e-17)
+    _, right = by_differences(case, case.changes, 1e-17, 0.01)
     assert np.abs(found.sum(axis=1) - right).max() <= 4e-13 * np.abs(found).max()

@@ -22,11 +22,12 @@ import numpy as np
 from tqdm import tqdm
 
 from derivatives import hybrid_runs, smooth_runs
+from derivatives.random_run import by_pendcore
 
 ALLOWED = 1e-8
 """A share of the largest entry: of derivatives, and of states, that both are of the same motion."""
 ALLOWED_IF_SMOOTH, ALLOWED_IN_AIR = 1e-12, 1e-9
-"""Of smooth runs: as a share of the largest entry by a name, or by the start if that is larger."""
+"""Errors of smooth runs are shares of the largest entry by a name, or by the start if larger."""
 
 
 class Verdict(NamedTuple):
@@ -44,8 +45,8 @@ class Verdict(NamedTuple):
 def judged_smooth(seed: int) -> Verdict:
     """Hold a smooth run against differences in many digits."""
     case = smooth_runs.drawn(seed)
-    end, columns, why = smooth_runs.by_pendcore(case)
-    sizes = dict(zip(case.signs, np.abs(columns).max(axis=0), strict=True))
+    end, columns, why = by_pendcore(case, rtol=1e-14, atol=1e-17)
+    sizes = dict(zip(case.changes, np.abs(columns).max(axis=0), strict=True))
     names = [name for name, size in sizes.items() if np.isfinite(size)]
     refused = len(sizes) - len(names)
     if not names:
@@ -53,7 +54,7 @@ def judged_smooth(seed: int) -> Verdict:
     if any(f'"{name}"' not in why for name in {*sizes} - {*names}):
         return Verdict(seed, 0, refused, np.nan, "wrong", f"names that are not told: {why}")
     transition = max(sizes[name] for name in names if name.startswith("q"))
-    changes = {name: case.signs[name] / max(sizes[name], transition) for name in names}
+    changes = {name: case.changes[name] / max(sizes[name], transition) for name in names}
     found = columns[:, np.isfinite(columns).all(axis=0)] @ [*changes.values()]
     verdict = Verdict(seed, 0, refused, np.nan, "no reference", "a bend may only be touched")
     for how in ((1e-16, 0.02), (1e-19, 0.001)):
@@ -68,7 +69,7 @@ def judged_smooth(seed: int) -> Verdict:
         elif error <= ALLOWED_IF_SMOOTH:
             kind = "right"
         else:
-            kind = "in air" if case.is_in_air and error <= ALLOWED_IN_AIR else "wrong"
+            kind = "in air" if smooth_runs.is_in_air(case) and error <= ALLOWED_IN_AIR else "wrong"
         verdict = Verdict(seed, 0, refused, error, kind, f"the end itself is {off:.1e} off. {why}")
         if kind == "right":
             break
@@ -78,7 +79,7 @@ def judged_smooth(seed: int) -> Verdict:
 def judged(seed: int) -> Verdict:
     """Hold a hybrid run against the reference in complex numbers."""
     case = hybrid_runs.drawn(seed)
-    end, columns, why = hybrid_runs.by_pendcore(case)
+    end, columns, why = by_pendcore(case, rtol=1e-13, atol=1e-15)
     is_there = np.isfinite(columns).all(axis=0)
     names = [name for name, there in zip(case.changes, is_there, strict=True) if not there]
     if names and not why:

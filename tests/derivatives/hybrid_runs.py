@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import random
 import re
-import warnings
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pendcore as pc
 from described_scenes import scene_of
 from numpy.typing import NDArray
 from reference.complex_runs import LITTLE, Friction, HybridRun, Range
@@ -17,30 +14,13 @@ from reference.effects import Described
 from reference.named_numbers import Numbers, pieces
 from reference.newton_euler import Body
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HybridCase:
-    """A scene, a start, and by how much each name is changed."""
-
-    bodies: list[Body]
-    gravity: float
-    described: list[Described]
-    q0: list[float]
-    qd0: list[float]
-    t_end: float
-    changes: dict[str, float]
-    """A derivative is taken along all of them at once: one wrong entry spoils the sum."""
-
-    @property
-    def scene(self) -> pc.Scene:
-        return scene_of(self.bodies, self.gravity, self.described)
-
+from derivatives.random_run import RandomRun
 
 WITH_TABLES = 300
 """From this seed on, some motors have tables, and some joints rest at the start."""
 
 
-def drawn(seed: int) -> HybridCase:
+def drawn(seed: int) -> RandomRun:
     """Draw a case of one to three links, whose joints have dry friction or stops."""
     some = random.Random(seed)
     n = some.choice([1, 2, 2, 2, 3])
@@ -102,7 +82,7 @@ def drawn(seed: int) -> HybridCase:
     ]
     names = [*some.sample(starts, min(2, len(starts))), *some.sample(named, min(5, len(named)))]
     changes = {name: some.choice([-1.0, 1.0]) * between(0.3, 1.0) for name in names}
-    return HybridCase(bodies=bodies, gravity=9.807, described=described, q0=q0, qd0=qd0,
+    return RandomRun(bodies=bodies, gravity=9.807, described=described, q0=q0, qd0=qd0,
                       t_end=between(0.5, 2.0), changes=changes)  # fmt: skip
 
 
@@ -121,7 +101,7 @@ def put_to_rest(
 
 
 def by_complex_numbers(
-    case: HybridCase, changes: dict[str, float], step: float
+    case: RandomRun, changes: dict[str, float], step: float
 ) -> tuple[NDArray[Any], NDArray[Any], list[str]]:
     """Return the state at the end, its derivative along these changes, and the events."""
     numbers = Numbers(case.bodies, case.gravity, case.described, [*case.q0, *case.qd0])
@@ -151,23 +131,3 @@ def by_complex_numbers(
     run = HybridRun(rig=rig, later=later, friction=friction, stops=stops)
     end = run.end(numbers.y, case.t_end, step)
     return end.real, end.imag / LITTLE.imag, run.events
-
-
-def by_pendcore(case: HybridCase) -> tuple[NDArray[Any], NDArray[Any], str]:
-    """Return the state, its derivative by each name, and what is said of those that are missing."""
-    return told_by_pendcore(case, [*case.changes], rtol=1e-13, atol=1e-15)
-
-
-def told_by_pendcore(
-    case: Any, names: list[str], **tolerances: float
-) -> tuple[NDArray[Any], NDArray[Any], str]:
-    """Simulate a case to its end."""
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always", pc.PendcoreWarning)
-        sol = pc.simulate(
-            case.scene, (0, case.t_end), case.q0, case.qd0, store="end", sensitivities=names,
-            **tolerances,
-        )  # fmt: skip
-    assert sol.sensitivities is not None
-    why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))
-    return sol.y[:, -1], sol.sensitivities[-1], why

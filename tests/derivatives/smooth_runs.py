@@ -7,10 +7,8 @@ which a run steps: there the motion itself is known less closely.
 from __future__ import annotations
 
 import random
-from dataclasses import dataclass
 from typing import Any
 
-import pendcore as pc
 from described_scenes import scene_of
 from numpy.typing import NDArray
 from reference.arithmetic import multiple_precision
@@ -19,35 +17,17 @@ from reference.named_numbers import Numbers
 from reference.newton_euler import Body
 from reference.slopes_of_ends import ends_beside
 
-from derivatives.hybrid_runs import told_by_pendcore
+from derivatives.random_run import RandomRun
 
 MANY = multiple_precision(40)
 CHANGE = MANY.number(10) ** -12
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SmoothCase:
-    """A scene, a start, and the names of all that its end depends on."""
-
-    bodies: list[Body]
-    gravity: float
-    described: list[Described]
-    q0: list[float]
-    qd0: list[float]
-    t_end: float
-    signs: dict[str, int]
-    """With which sign each name is changed; of these alone there are derivatives."""
-
-    @property
-    def is_in_air(self) -> bool:
-        return any(kind == "rod_drag" for kind, _ in self.described)
-
-    @property
-    def scene(self) -> pc.Scene:
-        return scene_of(self.bodies, self.gravity, self.described)
+def is_in_air(case: RandomRun) -> bool:
+    return any(kind == "rod_drag" for kind, _ in case.described)
 
 
-def drawn(seed: int) -> SmoothCase:
+def drawn(seed: int) -> RandomRun:
     """Draw a case of one to six links, whose ends depend on some fifty names."""
     some = random.Random(seed)
     n, between = some.randint(1, 6), some.uniform
@@ -99,20 +79,15 @@ def drawn(seed: int) -> SmoothCase:
     gravity = some.choice([0.0, between(1, 20)])
     starts = [f"{what}[{i}]" for what in ("q0", "qd0", "torque") for i in range(1, n + 1)]
     names = [*starts, "pivot.x", "pivot.y", *scene_of(bodies, gravity, described).parameters()]
-    return SmoothCase(
+    return RandomRun(
         bodies=bodies, gravity=gravity, described=described, t_end=between(0.05, 0.4),
         q0=[between(-4, 4) for _ in range(n)], qd0=[between(-10, 10) for _ in range(n)],
-        signs={name: some.choice([-1, 1]) for name in names},
+        changes={name: some.choice([-1, 1]) for name in names},
     )  # fmt: skip
 
 
-def by_pendcore(case: SmoothCase) -> tuple[NDArray[Any], NDArray[Any], str]:
-    """Return the state, its derivative by each name, and what is said of those that are missing."""
-    return told_by_pendcore(case, [*case.signs], rtol=1e-14, atol=1e-17)
-
-
 def by_differences(
-    case: SmoothCase, changes: dict[str, float], tolerance: float, longest: float
+    case: RandomRun, changes: dict[str, float], tolerance: float, longest: float
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the state at the end, and its derivative along these changes."""
     starts = []

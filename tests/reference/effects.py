@@ -48,7 +48,7 @@ class ViscousJoint(Law):
     damping2: float = 0.0
     damping3: float = 0.0
     sign: int | None = None
-    """Of w, where one law holds for both."""
+    """The sign that w keeps, where the law is to be analytic."""
 
     def terms(self, instant: Instant) -> list[Number]:
         number, w = instant.arithmetic.number, instant.relative_rate(self.joint)
@@ -175,7 +175,7 @@ class RodDrag(Law):
     air_density: float = 1.225
     wind: tuple[float, float] = (0.0, 0.0)
     signs: Sequence[int] | None = None
-    """Of w at both ends of the rod, where one law holds for all."""
+    """The signs that w keeps at both ends of the rod, where the law is to be analytic."""
 
     def speed(self, instant: Instant, s: Number) -> Number:
         """Speed of a point of the rod against the wind, across the rod."""

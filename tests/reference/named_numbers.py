@@ -19,7 +19,7 @@ from reference.newton_euler import Body
 from reference.rig import Law, Rig
 
 DEFAULTS = {"limit": math.inf, "air_density": 1.225, "stribeck_velocity": 0.1, "exponent": 2.0}
-"""What is not told of an effect, where that is not zero."""
+"""Parameters of effects that are not zero where nobody gives them."""
 
 
 @dataclass(frozen=True, kw_only=True)

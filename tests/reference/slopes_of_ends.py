@@ -111,8 +111,8 @@ def ends_beside(
             if not share >= 0.8:
                 step = (0.9 * share if share > 0.2 else 0.2) * (to - first.t)
                 continue
-            h, k = step_to_first_bend(first, to - first.t)
-            to = to if h == to - first.t else first.t + h
+            to, k = first_bend(first, to)
+            h = to - first.t
             for side in sides:
                 if k is None:
                     side.move(to)
@@ -122,18 +122,19 @@ def ends_beside(
     return [side.y for side in sides]
 
 
-def step_to_first_bend(side: Side, h: Any) -> tuple[Any, int | None]:
-    """Return how long a step is up to the first bend within, and its number."""
+def first_bend(side: Side, to: Any) -> tuple[Any, int | None]:
+    """Return the time and the number of the first bend up to a time; that time if there is none."""
     k, before = None, side.bends(side.t, side.y)
     for _ in range(60):
-        after = side.bends(side.t + h, side.after(h))
+        h = to - side.t
+        after = side.bends(to, side.after(h))
         crossed = np.flatnonzero((after * side.signs < 0) & (abs(after) > NEAR))
         if not len(crossed):
-            return h, k
+            return to, k
         share = {j: before[j] / (before[j] - after[j]) for j in crossed}
         k = min(share, key=lambda j: share[j])
         if abs(before[k]) < NEAR:  # just passed, and once more within the step
-            h, k = h / 2, None
+            to, k = side.t + h / 2, None
         else:
-            h = side.to_bend(k, h * share[k])
+            to = side.t + side.to_bend(k, h * share[k])
     raise AssertionError("a step has too many bends")

@@ -1,6 +1,7 @@
 #include "analysis/kinks_of_drag.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "arithmetic/instruction_set.hpp"
@@ -16,18 +17,11 @@ namespace {
 
 constexpr int samples = 9;  // of a step, with both ends
 
-}  // namespace
-
-KinksOfDrag::KinksOfDrag(const Scene& scene) : scene_(scene) {
-  ends_ = 2 * static_cast<int>(std::ranges::distance(effects_of<RodDrag>(scene)));
-  for (int i = 0; i < samples; ++i) thetas_.push_back(i / (samples - 1.0));
-}
-
 /// The speeds of both ends of each rod across it, against the wind, m/s.
-void KinksOfDrag::take_speeds(double t, const double* y, double* speeds) const {
-  const std::size_t n = scene_.links.size();
-  const Points ends = velocities(scene_, t, std::span(y, n), std::span(y + n, n));
-  for (const RodDrag& drag : effects_of<RodDrag>(scene_)) {
+void take_speeds(const Scene& scene, double t, const double* y, double* speeds) {
+  const std::size_t n = scene.links.size();
+  const Points ends = velocities(scene, t, std::span(y, n), std::span(y + n, n));
+  for (const RodDrag& drag : effects_of<RodDrag>(scene)) {
     double sine, cosine;
     sine_cosine(y[drag.link - 1], sine, cosine);
     for (const int end : {drag.link - 1, drag.link}) {
@@ -36,33 +30,38 @@ void KinksOfDrag::take_speeds(double t, const double* y, double* speeds) const {
   }
 }
 
-std::vector<double> KinksOfDrag::find(const WatchedStep& step, double t_start) {
+}  // namespace
+
+std::vector<double> kinks_of_drag(const Scene& scene, const WatchedStep& step, double t_start) {
   std::vector<double> found;
-  if (ends_ == 0) return found;
+  const int ends = 2 * static_cast<int>(std::ranges::distance(effects_of<RodDrag>(scene)));
+  if (ends == 0) return found;
   const auto size = static_cast<int>(step.y.size());
   static const auto sample = fastest<&sample_rows>();
-  states_.resize(static_cast<std::size_t>(samples) * size);
-  speeds_.resize(static_cast<std::size_t>(samples) * ends_);
+  std::array<double, samples> shares;
+  for (int i = 0; i < samples; ++i) shares[i] = i / (samples - 1.0);
+  std::vector<double> states(static_cast<std::size_t>(samples) * size);
+  std::vector<double> speeds(static_cast<std::size_t>(samples) * ends);
   const auto take = [&](const double* thetas, int count) {
-    sample(step.rows(), {}, 1.0, thetas, count, states_.data(), size, step.degree);
+    sample(step.rows(), {}, 1.0, thetas, count, states.data(), size, step.degree);
     for (int i = 0; i < count; ++i) {
-      take_speeds(t_start + thetas[i] * step.h, &states_[static_cast<std::size_t>(i) * size],
-                  &speeds_[static_cast<std::size_t>(i) * ends_]);
+      take_speeds(scene, t_start + thetas[i] * step.h, &states[static_cast<std::size_t>(i) * size],
+                  &speeds[static_cast<std::size_t>(i) * ends]);
     }
   };
-  take(thetas_.data(), samples);
-  const std::vector<double> sampled = speeds_;
-  for (int end = 0; end < ends_; ++end) {
+  take(shares.data(), samples);
+  const std::vector<double> sampled = speeds;
+  for (int end = 0; end < ends; ++end) {
     const auto speed = [&](double theta) {
       take(&theta, 1);
-      return speeds_[end];
+      return speeds[end];
     };
     int last = 0;  // the last sample that is not zero
     for (int i = 0; i < samples; ++i) {
-      const int after = sign(sampled[i * ends_ + end]);
+      const int after = sign(sampled[i * ends + end]);
       if (after == 0) continue;
-      if (after == -sign(sampled[last * ends_ + end])) {
-        found.push_back(bisect(speed, thetas_[last], thetas_[i], after));
+      if (after == -sign(sampled[last * ends + end])) {
+        found.push_back(bisect(speed, shares[last], shares[i], after));
       }
       last = i;
     }

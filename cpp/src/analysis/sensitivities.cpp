@@ -30,10 +30,7 @@ constexpr double most_tolerance = 1e-8;
 
 struct Sensitivities::Variation {
   Variation(const Scene& scene, const std::vector<std::string>& names)
-      : equations(scene, names),
-        kinks(equations.scene()),
-        n(equations.links()),
-        now(equations.changes_of_start()) {}
+      : equations(scene, names), n(equations.links()), now(equations.changes_of_start()) {}
 
   void start(double t, std::span<const double> y);
   void take(const WatchedStep& step);
@@ -57,7 +54,6 @@ struct Sensitivities::Variation {
   void take_back_last() { values.resize(values.size() - static_cast<std::size_t>(now.size())); }
 
   VariationalEquations equations;
-  KinksOfDrag kinks;
   std::optional<Saltation> saltation{};  ///< of a scene whose laws change
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
@@ -283,7 +279,7 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
   if (saltation && !is_over) misses = saltation->near_misses(step);
   bool by_series = true;
   double from = 0.0;  // where the changes are, if they go on by collocation
-  std::optional<std::vector<double>> kinks_ahead;
+  std::optional<std::vector<double>> kinks;
   const auto has_followed = [&](double to) {
     by_series = by_series && follow_by_series(step, to, from);
     return by_series;
@@ -293,9 +289,9 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
     if (has_followed(to)) {
       series.evaluate(since + to * step.h, now);
     } else if (to > from) {
-      if (!kinks_ahead) kinks_ahead = kinks.find(step, t_start);
+      if (!kinks) kinks = kinks_of_drag(equations.scene(), step, t_start);
       std::vector<double> ends;
-      std::ranges::copy_if(*kinks_ahead, std::back_inserter(ends),
+      std::ranges::copy_if(*kinks, std::back_inserter(ends),
                            [&](double kink) { return from < kink && kink < to; });
       ends.push_back(to);
       for (const double end : ends) {
