@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from pendcore._run.solution import Solution
 from pendcore._scene.outputs import outputs_at
 from pendcore.events import Event, Found, Function, JointAngle, LinkAngle, RateZero, TipLine
 
+ALIKE = 1e-6
+"""The share of its size below which a derivative differs from another by errors alone."""
 BESIDE = 1e-10
 """The distance from an event to the times beside it, as a share of the mean step."""
 LAST_BITS = 8
@@ -64,22 +67,80 @@ def sensitivities_at_events(solution: Solution) -> list[EventSensitivities]:
     for event, found in zip(asked, solution.events, strict=True):
         by = np.full((len(found), 1 + 2 * n, len(names)), np.nan)
         for k, one in enumerate(found):
-            if one.direction and one.y_before is None:
-                by[k] = _of_one(event, one, along)
+            by[k] = _of_one(event, one, along)
         results.append(EventSensitivities(by[:, 0], by[:, 1:]))
     return results
 
 
+class Side(NamedTuple):
+    """A run at one time, or just before or after it."""
+
+    S: Floats
+    """The sensitivities, (2n, m)."""
+    rates: Floats
+    """The rates of change of the state, (2n,)."""
+
+
+def moved_by_a_change(before: Side, after: Side) -> Floats | None:
+    """Return d(time)/d(name) of a change of laws between two sides, (m,); None if there is none.
+
+    The rates jump there from f- to f+. What is continuous, the angles at an impact and otherwise
+    the rates, tells by how much the time moves: ``(S+ - S-) dp + (f+ - f-) dt = 0``.
+    """
+    jumps, n = after.rates - before.rates, len(before.rates) // 2
+    for part in (slice(0, n), slice(n, 2 * n)):
+        if np.abs(jumps[part]).max() > JUMP * np.abs([before.rates, after.rates]).max():
+            c = part.start + int(np.abs(jumps[part]).argmax())
+            return np.asarray((before.S[c] - after.S[c]) / jumps[c])
+    return None
+
+
 def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     """Return the derivatives of the time and the state, (1 + 2n, m); NaN where there are none."""
-    S, rates = along.at(one.t, one.y)
+    sides = along.sides(one.t)
+    moved = None if sides is None else moved_by_a_change(*sides)
+    if sides is None or moved is None:
+        there = along.at(one.t)
+        dt = _crossing(event, one, there, along) * (1.0 if one.direction else np.nan)
+        return np.vstack([dt, there.S + np.outer(there.rates, dt)])
+    before, after = sides
+    if not _is_by_the_jump(event, one):
+        # The event lies where a law changes: for names that keep it there, it has a derivative.
+        of_event = _crossing(event, _before(one), before, along)
+        fastest = np.abs([before.rates, after.rates]).max()
+        sizes = np.abs(moved) + np.abs([before.S, after.S]).max(axis=(0, 1)) / fastest
+        moved = np.where(np.abs(of_event - moved) <= ALIKE * sizes, moved, np.nan)
+    return np.vstack([moved, after.S + np.outer(after.rates, moved)])
+
+
+def _crossing(event: Event, one: Found, there: Side, along: _Along) -> Floats:
+    """Return d(time)/d(name) of a zero of the event's function, (m,); NaN where it turns back."""
     by_state, by_names, by_time = _slopes(event, one, along)
-    terms = by_state * rates
+    terms = by_state * there.rates
     along_the_run = by_time + terms.sum()
     if abs(along_the_run) <= ROUNDING * (abs(by_time) + np.abs(terms).sum()):
-        return np.full((1 + len(S), len(along.names)), np.nan)
-    dt = -(by_state @ S + by_names) / along_the_run
-    return np.vstack([dt, S + np.outer(rates, dt)])
+        return np.full(len(along.names), np.nan)
+    return np.asarray(-(by_state @ there.S + by_names) / along_the_run)
+
+
+def _is_by_the_jump(event: Event, one: Found) -> bool:
+    """Whether it is a jump of the state that takes the event's function to zero or beyond."""
+    states = _before(one), one
+    match event:
+        case Function(f):
+            before, after = (float(f(there.t, there.q, there.qd)) for there in states)
+        case RateZero(link=int(link)):
+            before, after = (there.qd[link - 1] for there in states)
+        case RateZero(joint=int(joint)):
+            before, after = (np.diff(there.qd, prepend=0.0)[joint - 1] for there in states)
+        case _:
+            return False  # angles and places do not jump
+    return before * after < 0 or (before != 0 and after == 0)
+
+
+def _before(one: Found) -> Found:
+    """Return an event with the state before the jump, if there is one."""
+    return one if one.y_before is None else replace(one, y=one.y_before)
 
 
 class _Along:
@@ -91,7 +152,7 @@ class _Along:
     def __init__(self, solution: Solution) -> None:
         self.scene, self.names = solution.scene, solution.sensitivity_names
         stats, (start, end) = solution.stats, solution.t_span
-        self.start = start
+        self.start, self.way = start, float(np.sign(end - start))
         self.mean_step = abs(solution.t_reached - start) / max(stats.accepted, 1)
         times = [t for found in solution.events for t in found.t.tolist()]
         sides = [t for time in times for t in self.beside(time)]
@@ -107,19 +168,20 @@ class _Along:
     def beside(self, t: float) -> tuple[float, float]:
         """Return a time just before t and one just after it."""
         width = max(BESIDE * self.mean_step, LAST_BITS * float(np.spacing(abs(t))))
-        return t - width, t + width
+        return t - self.way * width, t + self.way * width
 
-    def at(self, t: float, y: Floats) -> tuple[Floats, Floats]:
-        """Return sensitivities and rates of change at an event; NaN where a law changes there."""
-        rates = self.rates(t, y)
-        sides = [self.rates(s, self.rows[s][1]) for s in self.beside(t) if s in self.rows]
-        if len(sides) == 2 and np.abs(np.subtract(*sides)).max() > JUMP * np.abs(sides).max():
-            rates = np.full_like(rates, np.nan)
-        return self.rows[t][0], rates
+    def sides(self, t: float) -> tuple[Side, Side] | None:
+        """Return the run just before a time and just after it, where it has both."""
+        before, after = self.beside(t)
+        if before not in self.rows or after not in self.rows:
+            return None
+        return self.at(before), self.at(after)
 
-    def rates(self, t: float, y: Floats) -> Floats:
+    def at(self, t: float) -> Side:
+        """Return the run at one of these times: after a jump, where there is one."""
+        S, y = self.rows[t]
         q, qd = np.split(y, 2)
-        return np.append(qd, self.scene.accelerations(t, q, qd))
+        return Side(S, np.append(qd, self.scene.accelerations(t, q, qd)))
 
 
 def _slopes(event: Event, one: Found, along: _Along) -> tuple[Floats, Floats, float]:

@@ -11,7 +11,14 @@ from numpy.polynomial import chebyshev
 
 from pendcore._messages.arguments import Floats
 from pendcore._run.dense_output import with_every_step
-from pendcore._run.event_sensitivities import BESIDE, JUMP, LAST_BITS, sensitivities_at_events
+from pendcore._run.event_sensitivities import (
+    ALIKE,
+    BESIDE,
+    LAST_BITS,
+    Side,
+    moved_by_a_change,
+    sensitivities_at_events,
+)
 from pendcore._run.sensitivities import along, sensitivities_there
 from pendcore._run.solution import Solution
 
@@ -23,8 +30,6 @@ SHORT = 2**14
 """The length of a step, in last bits of its time, below which it is a line."""
 ROUNDING = 1e-14
 """The share of a component below which the coefficients of its slope are rounding."""
-ALIKE = 1e-6
-"""The share of the largest sensitivity below which derivatives differ by errors alone."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,8 +198,8 @@ class _Around:
         S, y = along(solution, times)
         q, qd = np.split(y, 2, axis=-1)
         rates = np.hstack([qd, solution.scene.accelerations(times, q, qd)])
-        rows = zip(S, rates, strict=True)
-        self.at: dict[float, tuple[Floats, Floats]] = dict(zip(times.tolist(), rows, strict=True))
+        sides = map(Side, S, rates)
+        self.at: dict[float, Side] = dict(zip(times.tolist(), sides, strict=True))
 
     def beside(self, place: _Place) -> tuple[float, float, float]:
         """Return times before a place, at it, and after it, within the run."""
@@ -203,26 +208,21 @@ class _Around:
 
     def largest(self, places: list[_Place]) -> Floats:
         """Return the largest sensitivity to each name at some places and beside them, (m,)."""
-        S = [self.at[t][0] for place in places for t in self.beside(place)]
+        S = [self.at[t].S for place in places for t in self.beside(place)]
         return np.asarray(np.abs(S).max(axis=(0, 1)))
 
     def derivative(self, place: _Place, i: int) -> Floats:
         """Return the derivatives of a component at a place that moves along, (m,).
 
-        Where a rate changes from f- to f+, what is continuous tells by how much the time moves:
-        (S+ - S-) dp + (f+ - f-) dt = 0. Elsewhere either the rate is zero or the time is fixed.
+        Where no law changes, either the rate is zero or the time is fixed.
         """
         before, at, after = (self.at[t] for t in self.beside(place))
-        jumps, n = after[1] - before[1], len(at[1]) // 2
-        for part in (slice(0, n), slice(n, 2 * n)):  # rates jump at an impact; else accelerations
-            if np.abs(jumps[part]).max() > JUMP * np.abs([before[1], after[1]]).max():
-                c = part.start + int(np.abs(jumps[part]).argmax())
-                dt = (before[0][c] - after[0][c]) / jumps[c]
-                S, rates = before if place.is_before else after
-                return np.asarray(S[i] + rates[i] * dt)
+        if (moved := moved_by_a_change(before, after)) is not None:
+            side = before if place.is_before else after
+            return np.asarray(side.S[i] + side.rates[i] * moved)
         if place.beside and place.t == self.ends[1] and self.solution.status == "event":
             return np.asarray(self.at_the_last_event[i])
-        return np.asarray(at[0][i])
+        return np.asarray(at.S[i])
 
     @cached_property
     def at_the_last_event(self) -> Floats:

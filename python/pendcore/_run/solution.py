@@ -664,17 +664,19 @@ class Solution:
         """Find how the times of events, and the states there, change with each name.
 
         With S the sensitivities at a fixed time, f the rates of change of the state and g the
-        event's function, ``dt = -(g_y S + g_p) / (g_t + g_y f)`` and ``dy = S + f dt``. The run is
-        made again with its own steps, and keeps its bits.
+        event's function, ``dt = -(g_y S + g_p) / (g_t + g_y f)`` and ``dy = S + f dt``. Where an
+        impact turns a rate round, or a joint comes to stick, ``dt = -(S_after - S_before) /
+        (f_after - f_before)`` of what is continuous there, and the state is the one after it. The
+        run is made again with its own steps, and keeps its bits.
 
         Returns
         -------
         list of EventSensitivities
             One for each event asked for, with ``t`` (k, m) and ``y`` (k, 2n, m) for the k times in
             ``events`` and the m names of ``sensitivity_names``. NaN where an event has no
-            derivative, or one on each side: where it only touches zero (``direction`` 0), where the
-            state jumps or a law changes at that very time (an impact, a joint that comes to stick),
-            and where S has none.
+            derivative: where it only touches zero (``direction`` 0), where it happens to fall on an
+            impact or another change of a law that a name moves by another amount, and where S has
+            none.
 
         Raises
         ------

@@ -7,6 +7,9 @@
 ///
 ///     dqdd + (rho n.N - j) dqdd' = -rho (2 n.N_t dqd' + n.N_tt dq') - u.P dq
 ///                                  + dgamma cos q - drho n.u_tt(other) + dj qdd' + d(tau/A)
+///                                  + (a/A) dx_tt sin q
+///
+/// with x_tt the acceleration of the pivot along x. That along y takes from gravity.
 ///
 /// From their series c of n.N, h of 2 n.N_t, g of n.N_tt and w of u.P, with sums over m <= k and
 /// i = k - m,
@@ -58,9 +61,9 @@ class CoefficientsOfChanges {
   double states[4 * (highest_order + 1)];  ///< (q_1, q_2, qd_1, qd_2) of each order
   PaddedSeries rate[2];
   Series angle[2], acceleration[2];
-  Series cosine[2];  ///< sigma^2 cos q
-  Series bend[2];    ///< n.u_tt(other)
-  Series pull[2];    ///< -w
+  Series cosine[2], sine[2];  ///< sigma^2 cos q and sigma^2 sin q
+  Series bend[2];             ///< n.u_tt(other)
+  Series pull[2];             ///< -w
   Pair kappa;
   double inverse;  ///< 1/(1 - kappa kappa')
   /// -rho e_m = (square k + slope) k + constant, from m = -1 on.
@@ -157,7 +160,6 @@ PENDCORE_INLINE void CoefficientsOfChanges::find(const OfLinks& constants, const
   inverse = orders.inverse[0];
   store(states, load<Pack<4>>(y));
 
-  const Pair weight = (sigma * sigma) * constants.weight;
   for (int first = 0; first < order; first += width) {
     const Orders both_by_cos = product(rate[0], rate_by_cos_[1], first);
     const Orders both_by_sin = product(rate[0], rate_by_sin_[1], first);
@@ -168,10 +170,11 @@ PENDCORE_INLINE void CoefficientsOfChanges::find(const OfLinks& constants, const
     for (int i = 0; i < 2; ++i) {
       const Orders x = along_[i].eight(first);
       const Orders y_of_n = across_[i].eight(first);
-      const Orders sine = fma(s0[i], y_of_n, -(c0[i] * x));
+      const Orders sine_of_q = sigma * sigma * fma(s0[i], y_of_n, -(c0[i] * x));
+      store(sine[i].data() + first, sine_of_q);
       store(cosine[i].data() + first, Orders(sigma * sigma * fma(s0[i], x, c0[i] * y_of_n)));
-      store(pull[i].data() + first,
-            fma(constants.coupling[i], second_[i].eight(first), -(weight[i] * sine)));
+      store(pull[i].data() + first, fma(constants.coupling[i], second_[i].eight(first),
+                                        -(constants.weight[i] * sine_of_q)));
       store(acceleration[i].data() + first, of_derivative(rate[i], first));
       angle[i][0] = start[i];
       store(angle[i].data() + first + 1, Orders(one_over(first + 1) * rate[i].eight(first)));

@@ -9,6 +9,7 @@
 /// sixteen names, share what is loaded for them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -19,6 +20,14 @@
 #include "dynamics/series/effects_with_slopes.hpp"
 
 namespace pendcore {
+
+/// Whether a pivot has no acceleration, or only slopes of one that is constant.
+inline bool stands_still(const PivotLawOf<AlongNames>& pivot) {
+  const auto is_still = [](const PivotLawOf<AlongNames>::Axis& along) {
+    return along.held.value == 0.0 && is_zero(along.slope) && is_zero(along.gain);
+  };
+  return is_still(pivot.x) && is_still(pivot.y);
+}
 
 /// Two links that turn freely, whose pivot stands still and which at most two waves drive.
 class DoublePendulumAlongNames {
@@ -31,7 +40,8 @@ class DoublePendulumAlongNames {
   using Effects = EffectsWithSlopes<Links>;
 
   static bool has(const Effects& effects) {
-    return !effects.any_held && effects.pivots.empty() && effects.waves <= 2;
+    return !effects.any_held && effects.waves <= 2 &&
+           std::ranges::all_of(effects.pivots, stands_still);
   }
   DoublePendulumAlongNames(const Mechanism<AlongNames>& of, Effects effects);
 
@@ -46,7 +56,9 @@ class DoublePendulumAlongNames {
 
  private:
   Constants constants_;
-  Links factor_;  ///< 1/A
+  Links factor_;    ///< 1/A
+  Links push_{};    ///< a/A by the acceleration of the pivot along x
+  bool is_pushed_;  ///< whether some name has a share in it
   Effects effects_;
 };
 
@@ -89,7 +101,7 @@ struct DoublePendulumAlongNames::Changes {
 
   PENDCORE_INLINE Changes(const DoublePendulumAlongNames& of, double t, double sigma,
                           AlongNames* to)
-      : constants(of.constants_), rows(to) {
+      : constants(of.constants_), push(of.is_pushed_ ? &of.push_ : nullptr), rows(to) {
     if (!of.effects_.couples.empty() || of.effects_.waves != 0) {
       laws = torque_laws(of.effects_, of.factor_);
       torque.emplace(laws, t, sigma);
@@ -115,6 +127,10 @@ struct DoublePendulumAlongNames::Changes {
               of_link(1, weight.slope.second, coupling.slope.second, rotor.slope.second),
               {},
               {}};
+    if (push != nullptr) {
+      sums.first = fma(common.sine[0][k], push->slope.first, sums.first);
+      sums.second = fma(common.sine[1][k], push->slope.second, sums.second);
+    }
     if (torque) {
       const auto links = [&](const auto& series, int order, double by)
                              __attribute__((always_inline)) {
@@ -132,6 +148,7 @@ struct DoublePendulumAlongNames::Changes {
   TorqueLaws<Links, AlongNames> laws;
   std::optional<TorqueOrders<Links, AlongNames, Links>> torque;
   const Constants& constants;
+  const Links* push;  ///< null if none
   AlongNames* rows;
   Slopes angles[highest_order + 3][2];
 };
@@ -232,7 +249,15 @@ inline DoublePendulumAlongNames::DoublePendulumAlongNames(const Mechanism<AlongN
   factor_ = pair_of(1.0 / (A1 + J), 1.0 / (A2 + J));
   const Links both = factor_ * other(factor_);
   const auto links = [](const Number& x) { return pair_of(x, x); };
-  constants_ = {.weight = links(of.gravity) * (pair_of(a1, a2) * factor_),
+  const Links arms = pair_of(a1, a2) * factor_;
+  Number push_x{}, gravity = of.gravity;  // less the acceleration of the pivot along y
+  for (const PivotLawOf<Number>& pivot : effects_.pivots) {
+    push_x = push_x + pivot.x.held;
+    gravity = gravity - pivot.y.held;
+  }
+  is_pushed_ = !is_zero(push_x);
+  push_ = links(push_x) * arms;
+  constants_ = {.weight = links(gravity) * arms,
                 .coupling = links(A12) * factor_,
                 .rotor = links(J) * factor_,
                 .product = links(A12 * A12) * both,
