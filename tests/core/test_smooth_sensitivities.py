@@ -35,10 +35,10 @@ def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch
     assert judged_smooth(28).kind == "wrong"
 
 
-@pytest.mark.parametrize("wind", [(2.0, 0.0), (0.0, 3.0)])
+@pytest.mark.parametrize("wind", [(2.0, 0.0), (0.0, 3.0), (5.0, -4.0)])
 @pytest.mark.parametrize("t_end", [0.3, 0.5])
 def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> None:
-    """Where an end of the rod turns into the wind, the changes have a kink."""
+    """Where an end of the rod turns into the wind, the motion and its changes have a kink."""
     names = ["q0[1]", "qd0[2]", "gravity", "effect[1].diameter", "effect[1].wind.x"]
     drag = {"link": 2, "drag_coefficient": 1.5, "diameter": 0.3, "air_density": 4.0, "wind": wind}
     case = RandomRun(
@@ -46,6 +46,24 @@ def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> 
         described=[("rod_drag", drag)], q0=[0.3, 1.0], qd0=[4.0, -6.0], t_end=t_end,
         changes=dict.fromkeys(names, 1.0),
     )  # fmt: skip
-    _, found, _ = by_pendcore(case, rtol=1e-14, atol=1e-17)
-    _, right = by_differences(case, case.changes, 1e-17, 0.01)
+    end, found, _ = by_pendcore(case, rtol=1e-14, atol=1e-17)
+    right_end, right = by_differences(case, case.changes, 1e-17, 0.01)
+    np.testing.assert_allclose(end, right_end, rtol=0, atol=2e-13)
     assert np.abs(found.sum(axis=1) - right).max() <= 4e-13 * np.abs(found).max()
+
+
+def test_a_bend_is_passed_twice_in_milliseconds() -> None:
+    """The rate rises to 3e-4 rad/s above zero, where quadratic friction has a kink, and falls."""
+    wave = {"amplitude": 3.0, "angular_frequency": 9.0, "phase": np.pi / 2}
+    names = {"q0[1]": 1.0, "qd0[1]": 1.0, "effect[2].damping2": 1.0}
+    case = RandomRun(
+        bodies=[uniform_rod(1.0, 1.0)], gravity=0.0, q0=[0.0], qd0=[-1.138538], t_end=0.4,
+        described=[("motor", {"joint": 1, "sinusoid": wave}),
+                   ("viscous_joint", {"joint": 1, "damping": 0.0, "damping2": 1.0})],
+        changes=names,
+    )  # fmt: skip
+    end, found, _ = by_pendcore(case, rtol=1e-14, atol=1e-17)
+    for longest in (0.02, 1e-4):
+        right_end, right = by_differences(case, names, 1e-17, longest)
+        np.testing.assert_allclose(end, right_end, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(found.sum(axis=1), right, rtol=0, atol=1e-13)

@@ -8,8 +8,7 @@ Hybrid runs go through impacts, stick and release; smooth ones have all other ef
 derivative is wrong is listed, and so is one whose end is not that of the reference: the exit status
 is then 1. A run may be refused, and says why, or only some names by name; some have no reference.
 From seed 300 on, some motors of hybrid runs have tables, and some joints rest at the start. Smooth
-runs of odd seeds are in air, and are listed where they are off by more than those of even seeds may
-be.
+runs of odd seeds are in air.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from derivatives.random_run import by_pendcore
 
 ALLOWED = 1e-8
 """A share of the largest entry: of derivatives, and of states, that both are of the same motion."""
-ALLOWED_IF_SMOOTH, ALLOWED_IN_AIR = 1e-12, 1e-9
+ALLOWED_IF_SMOOTH = 1e-12
 """Errors of smooth runs are shares of the largest entry by a name, or by the start if larger."""
 
 
@@ -38,7 +37,7 @@ class Verdict(NamedTuple):
     names: int
     """How many of its names were refused, while others were not."""
     error: float
-    kind: str  # "right", "in air", "refused", "wrong", "another motion" or "no reference"
+    kind: str  # "right", "refused", "wrong", "another motion" or "no reference"
     told: str
 
 
@@ -66,10 +65,8 @@ def judged_smooth(seed: int) -> Verdict:
         off = float(np.abs(end - right_end).max() / max(1.0, np.abs(right_end).max()))
         if off > ALLOWED:
             kind = "another motion"
-        elif error <= ALLOWED_IF_SMOOTH:
-            kind = "right"
         else:
-            kind = "in air" if smooth_runs.is_in_air(case) and error <= ALLOWED_IN_AIR else "wrong"
+            kind = "right" if error <= ALLOWED_IF_SMOOTH else "wrong"
         verdict = Verdict(seed, 0, refused, error, kind, f"the end itself is {off:.1e} off. {why}")
         if kind == "right":
             break
@@ -117,13 +114,10 @@ def main(arguments: list[str] | None = None) -> int:
         verdicts.append(one := (judged if told.runs == "hybrid" else judged_smooth)(seed))
         if one.kind != "right" or one.names:
             print(f"seed {one.seed}: {one.kind} ({one.error:.1e}): {one.told}", flush=True)
-    for kind in ("right", "in air"):
-        ones = [one for one in verdicts if one.kind == kind]
-        if not ones:
-            continue
-        errors, events = [one.error for one in ones], sum(one.events for one in ones)
+    if right := [one for one in verdicts if one.kind == "right"]:
+        errors, events = [one.error for one in right], sum(one.events for one in right)
         print(
-            f"{len(ones)} of {len(verdicts)} {kind}, with {events} events; "
+            f"{len(right)} of {len(verdicts)} right, with {events} events; "
             f"the worst is {max(errors):.1e} off, the median {np.median(errors):.1e}"
         )
     refused = sum(one.kind == "refused" for one in verdicts)

@@ -1,7 +1,6 @@
 """Random runs with all smooth effects, and the derivatives of their ends.
 
-Those of odd seeds are in air. Its drag has kinks where an end of a rod turns into the wind, over
-which a run steps: there the motion itself is known less closely.
+Those of odd seeds are in air.
 """
 
 from __future__ import annotations
@@ -21,10 +20,6 @@ from derivatives.random_run import RandomRun
 
 MANY = multiple_precision(40)
 CHANGE = MANY.number(10) ** -12
-
-
-def is_in_air(case: RandomRun) -> bool:
-    return any(kind == "rod_drag" for kind, _ in case.described)
 
 
 def drawn(seed: int) -> RandomRun:

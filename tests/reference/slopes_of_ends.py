@@ -49,6 +49,12 @@ class Side:
         instant = self.rig.instant(t, *np.split(y, 2))
         return np.array([x for law in self.rig.effects for x in law.bends(instant)])
 
+    def slopes(self, t: Any, y: Any, little: float = LITTLE) -> NDArray[Any]:
+        """Return the slopes of the bends in time, over a little time ahead or before."""
+        beside = y + little * self.rates(t, y)
+        found: NDArray[Any] = (self.bends(t + little, beside) - self.bends(t, y)) / little
+        return found
+
     def after(self, h: Any) -> NDArray[Any]:
         """Return the state after a step."""
         return self.rules(h)[-1]
@@ -74,8 +80,7 @@ class Side:
             here = self.bends(self.t + h, y)[k]
             if abs(here) < NEAR:
                 return h
-            ahead = y + LITTLE * self.rates(self.t + h, y)
-            h -= here * LITTLE / (self.bends(self.t + h + LITTLE, ahead)[k] - here)
+            h -= here / self.slopes(self.t + h, y)[k]
         raise AssertionError("a bend is not found: it may only be touched")
 
     def move(self, to: Any) -> None:
@@ -97,7 +102,8 @@ def ends_beside(
 ) -> list[NDArray[Any]]:
     """Return the states at the end of runs of some rig, from some state each.
 
-    A bend that changes its sign twice within the longest step, s, is not seen.
+    A bend that changes its sign twice within a step is seen where it comes nearer at its start, and
+    goes away at its end.
     """
     begin, end = span
     sides = [Side(rig, begin, y) for rig, y in starts]
@@ -130,7 +136,10 @@ def first_bend(side: Side, to: Any) -> tuple[Any, int | None]:
         after = side.bends(to, side.after(h))
         crossed = np.flatnonzero((after * side.signs < 0) & (abs(after) > NEAR))
         if not len(crossed):
-            return to, k
+            if k is not None or (share_between := _share_between(side, h)) is None:
+                return to, k
+            to = side.t + h * share_between
+            continue
         share = {j: before[j] / (before[j] - after[j]) for j in crossed}
         k = min(share, key=lambda j: share[j])
         if abs(before[k]) < NEAR:  # just passed, and once more within the step
@@ -138,3 +147,17 @@ def first_bend(side: Side, to: Any) -> tuple[Any, int | None]:
         else:
             to = side.t + side.to_bend(k, h * share[k])
     raise AssertionError("a step has too many bends")
+
+
+def _share_between(side: Side, h: Any) -> Any:
+    """Return a share of a step at which a bend has the other sign than at both ends, if one has."""
+    end = side.after(h)
+    before, after = side.bends(side.t, side.y), side.bends(side.t + h, end)
+    first, last = side.slopes(side.t, side.y), side.slopes(side.t + h, end, -LITTLE)
+    comes_and_goes = (before * after > 0) & (before * first < 0) & (after * last > 0)
+    for j in np.flatnonzero(comes_and_goes & (abs(before) > NEAR) & (abs(after) > NEAR)):
+        share = first[j] / (first[j] - last[j])
+        there = side.bends(side.t + h * share, side.after(h * share))[j]
+        if there * side.signs[j] < -NEAR:
+            return share
+    return None

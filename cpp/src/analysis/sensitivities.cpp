@@ -21,6 +21,7 @@ namespace {
 
 constexpr int most_halvings_of_step = 44;
 constexpr int most_cuts_of_step = 1000;
+constexpr double negligible = 1e-3;  // of a step, beside its end, where drag may have a kink
 /// The error that a step by collocation may add, as a share: 0.3 of what the run may, between
 /// these. A series may add a third of it.
 constexpr double least_tolerance = 1e-14;
@@ -30,7 +31,10 @@ constexpr double most_tolerance = 1e-8;
 
 struct Sensitivities::Variation {
   Variation(const Scene& scene, const std::vector<std::string>& names)
-      : equations(scene, names), n(equations.links()), now(equations.changes_of_start()) {}
+      : equations(scene, names), n(equations.links()), now(equations.changes_of_start()) {
+    air.prepare(equations.scene(), equations.equations().effects.get());
+    air.put(equations.scene());
+  }
 
   void start(double t, std::span<const double> y);
   void take(const WatchedStep& step);
@@ -54,6 +58,7 @@ struct Sensitivities::Variation {
   void take_back_last() { values.resize(values.size() - static_cast<std::size_t>(now.size())); }
 
   VariationalEquations equations;
+  EndsInAir<double> air{};
   std::optional<Saltation> saltation{};  ///< of a scene whose laws change
   int n;
   Matrix now;  ///< (2n, k); NaN where there are none
@@ -289,10 +294,11 @@ void Sensitivities::Variation::take(const WatchedStep& step) {
     if (has_followed(to)) {
       series.evaluate(since + to * step.h, now);
     } else if (to > from) {
-      if (!kinks) kinks = kinks_of_drag(equations.scene(), step, t_start);
+      if (!kinks) kinks = kinks_of_drag(air, step, t_start);
       std::vector<double> ends;
-      std::ranges::copy_if(*kinks, std::back_inserter(ends),
-                           [&](double kink) { return from < kink && kink < to; });
+      std::ranges::copy_if(*kinks, std::back_inserter(ends), [&](double kink) {
+        return from + negligible < kink && kink < to - negligible;
+      });
       ends.push_back(to);
       for (const double end : ends) {
         if (!is_over) advance(step, from, end, 0);

@@ -268,6 +268,18 @@ PENDCORE_INLINE Condition<Real> is_at_most(const Real& a, const Real& b) {
   }
 }
 
+/// Whether something holds in any lane.
+template <class AnyCondition>
+PENDCORE_INLINE bool holds_somewhere(const AnyCondition& x) {
+  if constexpr (std::is_same_v<AnyCondition, bool>) {
+    return x;
+  } else {
+    long long bits = 0;
+    for (std::size_t i = 0; i < sizeof(x) / sizeof(x[0]); ++i) bits |= x[i];
+    return bits != 0;
+  }
+}
+
 /// The larger number in every lane; `b` where either is NaN.
 template <class Real>
 PENDCORE_INLINE Real larger(const Real& a, const Real& b) {

@@ -41,6 +41,7 @@ struct FewLinksInLanes {
     gravity[lane] = chain.gravity();
     effects.put(lane, *chain.effects());
   }
+  const Drives<Real>* drives() const { return &effects; }
 
   /// As ChainOf computes it, in the same order.
   PENDCORE_INLINE Links accelerations(const Real& t, const Links& q, const Links& qd) const {

@@ -9,6 +9,7 @@
 ///     prepare(scene, equations)  makes room for trajectories like this one; from then on, the form
 ///                                stays where it is
 ///     put(lane, scene, equations)  puts the constants of a trajectory into a lane
+///     drives()                   what moves the pivot; null without effects
 ///
 /// and those of Runge-Kutta methods `is_called`: whether a step calls them (CalledEquations); if
 /// not, they are written into it.
@@ -78,6 +79,8 @@ struct OneLinkInLanes
     }
   }
 
+  const Drives<Real>* drives() const { return &in_lanes; }
+
  private:
   EffectsInLanes<EachLink<Real, 1>, Real> in_lanes;
 };
@@ -94,6 +97,7 @@ struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
   void put(int lane, const Scene& /*scene*/, const EquationsOfMotion& one) {
     put_constants(*this, lane, std::get<DoublePendulum>(one.form));
   }
+  const Drives<Real>* drives() const { return nullptr; }
 };
 
 /// Two links with effects. Each form of a run has its own in lanes, as one for all parts would take
@@ -115,6 +119,8 @@ struct TwoLinksInLanes : LoadedDoublePendulum<EffectsInLanes<Two<Real>, Real>, p
     put_constants(*this, lane, std::get<OfRun>(one.form));
     in_lanes.put(lane, effects_on<Pair>(one));
   }
+
+  const Drives<Real>* drives() const { return &in_lanes; }
 
  private:
   using OfRun = DoublePendulumWithEffects<parts>;

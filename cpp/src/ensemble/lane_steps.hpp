@@ -165,13 +165,15 @@ PENDCORE_INLINE NextStep<width> next_step(const LaneSteps<width>& lanes,
   return next;
 }
 
-/// Accepts or rejects the steps that were `tried` (all bits set), and notes what needs attention.
+/// Accepts or rejects the steps that were `tried` (all bits set), and notes what needs attention. A
+/// step that has a kink, at a share of it below 1, is taken again to end there.
 /// Returns where a step was accepted; there, the end of the step is the time that lanes have now.
 template <const auto& method, int width>
 PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
     LaneSteps<width>& lanes, const LaneInterval& interval, const NextStep<width>& next,
     const ErrorAndFactor<Pack<width>>& found, const typename NextStep<width>::Integers& runs_alone,
-    const typename NextStep<width>::Integers& tried, Attention& attention) {
+    const typename NextStep<width>::Integers& tried, Attention& attention,
+    const Pack<width>* first_kink = nullptr) {
   namespace detail = lanes_detail;
   using Real = Pack<width>;
   using Integers = typename NextStep<width>::Integers;
@@ -180,8 +182,10 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const Real max_step = broadcast<Real>(interval.max_step);
   const Real h = next.h;
   const Integers is_right = is_at_most(found.squared_error, broadcast<Real>(1.0));
-  const Integers is_accepted = is_right & tried;
-  const Integers is_rejected = ~is_right & tried;
+  Integers has_kink{};
+  if (first_kink != nullptr) has_kink = is_less(*first_kink, broadcast<Real>(1.0));
+  const Integers is_accepted = is_right & ~has_kink & tried;
+  const Integers is_rejected = ~is_accepted & tried;
 
   const Real log2_error = log2_of_error(found);
   const Real longer =
@@ -189,11 +193,12 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   Real shorter = lanes.h;
   if ((detail::bits_of(is_rejected) & lanes.active) != 0) {
     shorter = h * factor_if_rejected(info, log2_error);
+    if (first_kink != nullptr) shorter = has_kink ? Real(h * *first_kink) : shorter;
   }
   const Real smallest = broadcast<Real>(StepControl::log2_smallest_error);
   lanes.log2_error_before =
       is_accepted ? larger_or_first(log2_error, smallest) : lanes.log2_error_before;
-  lanes.after_rejection = is_rejected;
+  lanes.after_rejection = (is_rejected & ~has_kink) | (lanes.after_rejection & has_kink);
   lanes.accepted -= is_accepted;
   lanes.rejected -= is_rejected;
   lanes.steps_to_look += is_accepted;

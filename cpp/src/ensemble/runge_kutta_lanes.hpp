@@ -3,11 +3,13 @@
 /// single run (integrate/runge_kutta/step.hpp), on packs.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <tuple>
 #include <utility>
 
+#include "dynamics/ends_in_air.hpp"
 #include "dynamics/first_order.hpp"
 #include "ensemble/few_links_in_lanes.hpp"
 #include "ensemble/lane_steps.hpp"
@@ -29,6 +31,7 @@ struct CalledEquations {
   // As lane_equations.hpp says.
   std::function<void(const Scene&, const EquationsOfMotion&)> prepare;
   std::function<void(int lane, const Scene&, const EquationsOfMotion&)> put;
+  std::function<const Drives<Real>*()> drives;
 
   PENDCORE_INLINE void derivative(const Real& t, const Row* y, Row* dydt) const {
     compute(form.get(), t, y, dydt);
@@ -51,6 +54,12 @@ struct RungeKuttaLanes : LaneSteps<width> {
   static_assert(method.first_same_as_last && method.info.error_order > 0);
 
   Memory memory;
+  EndsInAir<Real> air;  ///< none where steps do not end at kinks of drag
+  typename EndsInAir<Real>::Speeds speeds, speeds_after;  ///< at the start of a step, and its end
+  bool are_speeds_known = false;                          ///< at the start
+  Real first_kink = {};                                   ///< as a share of the attempted step
+  /// Computes it. It is called, as it would part the registers of the step.
+  void (*find_first_kinks)(RungeKuttaLanes* all, const Real& h) = nullptr;
   // For dense output:
   Block y_before[Memory::blocks] = {};      ///< the state before the last step
   Block rates_before[Memory::blocks] = {};  ///< its derivative
@@ -101,6 +110,38 @@ PENDCORE_INLINE LaneBits interpolate_step(RungeKuttaLanes<method, Equations, wid
                                               Memory::degree, broadcast<Real>(1.0)));
 }
 
+/// The numbers of a state, (q, qd), from its two rows.
+template <class Real, class Row>
+PENDCORE_INLINE auto numbers_of(const Row* rows) {
+  constexpr int links = links_in_row<Row>;
+  std::array<Real, 2 * static_cast<std::size_t>(links)> numbers;
+  for (int i = 0; i < 2; ++i) {
+    for (int link = 0; link < links; ++link) numbers[i * links + link] = number_of(rows[i], link);
+  }
+  return numbers;
+}
+
+/// Computes the shares of the attempted steps, of size h, at which their first kinks lie. The
+/// speeds at their starts are those at the ends of the steps before, where these were accepted.
+template <const auto& method, class Equations, int width>
+PENDCORE_INLINE void find_first_kinks(RungeKuttaLanes<method, Equations, width>* all,
+                                      const Pack<width>& h) {
+  using All = RungeKuttaLanes<method, Equations, width>;
+  using Real = typename All::Real;
+  const auto& memory = all->memory;
+  if (!all->are_speeds_known) {
+    const auto start = numbers_of<Real>(memory.y);
+    const auto slopes = numbers_of<Real>(memory.k[0]);
+    all->air.find(all->t, start.data(), slopes.data(), all->speeds);
+  }
+  all->are_speeds_known = !all->air.depend_on_time();
+  const Real t_new = all->t + h;
+  const auto end = numbers_of<Real>(memory.y_new);
+  const auto slopes = numbers_of<Real>(memory.k[All::stages - 1]);
+  all->air.find(t_new, end.data(), slopes.data(), all->speeds_after);
+  all->first_kink = all->air.first_kink(h, all->speeds, all->speeds_after);
+}
+
 /// Takes up to `rounds` steps in each lane, until some need attention.
 template <const auto& method, class Equations, int width>
 PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* all,
@@ -132,8 +173,11 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* 
       }
     }
     const Integers all_tried = Integers{} - 1;
+    const bool is_in_air = all->air.count() != 0;
+    if (is_in_air) all->find_first_kinks(all, next.h);
     const Integers is_accepted =
-        finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention);
+        finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention,
+                                   is_in_air ? &all->first_kink : nullptr);
     if (all->needs_dense_output) {
       for (int i = 0; i < All::Memory::blocks; ++i) {
         all->y_before[i] = memory.y[i];
@@ -143,6 +187,11 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* 
     for (int i = 0; i < All::Memory::blocks; ++i) {
       select(is_accepted, memory.y_new[i], memory.y[i]);
       select(is_accepted, memory.k[All::stages - 1][i], memory.k[0][i]);
+    }
+    for (int end = 0; end < all->air.count(); ++end) {
+      all->speeds.w.set(end, is_accepted ? all->speeds_after.w[end] : all->speeds.w[end]);
+      all->speeds.slope.set(end,
+                            is_accepted ? all->speeds_after.slope[end] : all->speeds.slope[end]);
     }
   }
   return attention;

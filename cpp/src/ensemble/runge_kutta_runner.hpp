@@ -12,6 +12,7 @@
 #include "ensemble/runge_kutta_lanes.hpp"
 #include "integrate/loop/first_step.hpp"
 #include "pendcore/methods.hpp"
+#include "simulate/kinks_of_run.hpp"
 
 namespace pendcore {
 
@@ -26,6 +27,13 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
       : LaneLoop<width>(task, method.info.name), n_(task.scene.links.size()) {
     all_.memory.system.dynamics = std::move(equations);
     this->prepare(all_.memory.system.dynamics);
+    const double tolerance = tightest_tolerance(task.options, n_);
+    if (ends_at_kinks(method.info, tolerance)) {
+      all_.air.prepare(task.scene, all_.memory.system.dynamics.drives());
+      for (int lane = 0; lane < width; ++lane) all_.air.put(task.scene, lane);
+      all_.find_first_kinks = only<&find_first_kinks<method, Equations, width>, set>();
+      all_.speeds = all_.speeds_after = all_.air.speeds();
+    }
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
         put_row(all_.memory.rtol[i], lane, this->rtol_.data() + i * n_);
@@ -60,8 +68,10 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   }
   void put_equations(int lane, const Scene& scene) override {
     all_.memory.system.dynamics.put(lane, scene, *this->equations_);
+    if (all_.air.count() != 0) all_.air.put(scene, lane);
   }
   void put_start(int lane, const std::vector<double>& y) override {
+    all_.are_speeds_known = false;
     const Options& options = this->options_;
     double h = std::min(options.first_step.value_or(options.max_step), options.max_step);
     if (!options.first_step) {
@@ -77,6 +87,7 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     }
   }
   void put_state(int lane, const double* y) override {
+    all_.are_speeds_known = false;
     for (int i = 0; i < 2; ++i) put_row(all_.memory.y[i], lane, y + i * n_);
   }
   void get_state(int lane, double* y) const override {
@@ -117,7 +128,8 @@ std::unique_ptr<LaneRunner> runner_of(const LaneTask& task) {
           task, Called{.form = form,
                        .compute = only<&derivative_in_lanes<System, Real, Row>, set>(),
                        .prepare = [form](const auto&... one) { form->dynamics.prepare(one...); },
-                       .put = [form](const auto&... one) { form->dynamics.put(one...); }});
+                       .put = [form](const auto&... one) { form->dynamics.put(one...); },
+                       .drives = [form] { return form->dynamics.drives(); }});
     } else {
       runner = std::make_unique<RungeKuttaRunner<method, Form, set>>(task, Form());
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 #include "integrate/loop/attempt.hpp"
@@ -34,6 +35,10 @@ class Stepper : public StepOutput {
 
   virtual void get_derivative(double* dydt) const = 0;  ///< that of the state before the step
   virtual void set_new_state(const double* y) = 0;      ///< replaces the state after it
+  /// That of the state after it, for methods whose last stage it is.
+  virtual void get_new_derivative(double* /*dydt*/) const {
+    throw std::logic_error("this method has no stage at the end of a step");
+  }
   virtual void evaluate(double t, const double* y, double* dydt) = 0;  ///< the right-hand side
 
   /// Called from time to time in a long attempt. If it returns false, the attempt is given up, and

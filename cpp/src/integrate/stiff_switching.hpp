@@ -72,6 +72,7 @@ class StiffSwitchingStepper final : public Stepper {
   void get_state(double* y) const override { now().get_state(y); }
   void get_derivative(double* dydt) const override { now().get_derivative(dydt); }
   void get_new_state(double* y) const override { now().get_new_state(y); }
+  void get_new_derivative(double* dydt) const override { now().get_new_derivative(dydt); }
   void set_new_state(const double* y) override { now().set_new_state(y); }
   void evaluate(double t, const double* y, double* dydt) override;
   double own_first_step(double t) override { return now().own_first_step(t); }

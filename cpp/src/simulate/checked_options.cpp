@@ -36,6 +36,14 @@ std::vector<double> absolute_tolerances(const Options& options, std::size_t n) {
   return tolerances("atol", options.atol, 2 * n, 1e-150);
 }
 
+double tightest_tolerance(const Options& options, std::size_t n) {
+  const std::vector<double> rtol = relative_tolerances(options, n);
+  const std::vector<double> atol = absolute_tolerances(options, n);
+  double least = 1.0;
+  for (std::size_t i = 0; i < rtol.size(); ++i) least = std::min(least, std::max(rtol[i], atol[i]));
+  return least;
+}
+
 void check_times(const std::vector<double>& times, double t0, double t_end) {
   const double direction = t_end < t0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < times.size(); ++i) {

@@ -29,6 +29,9 @@ std::vector<double> relative_tolerances(const Options& options, std::size_t n);
 /// Throws std::invalid_argument for a wrong number of them.
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n);
 
+/// The least of the larger of both over the components: by it, methods are chosen.
+double tightest_tolerance(const Options& options, std::size_t n);
+
 /// Throws std::invalid_argument for options with which no start of the scene can be run, except
 /// methods and tolerances, which make_stepper() and relative_tolerances() check.
 void check_options(const Scene& scene, const Options& options, double t0, double t_end);

@@ -1,7 +1,5 @@
 #include "simulate/method_choice.hpp"
 
-#include <algorithm>
-
 #include "integrate/method_list.hpp"
 #include "pendcore/methods.hpp"
 #include "scene/effects_of_scene.hpp"
@@ -22,11 +20,7 @@ std::string_view chosen_method(const Scene& scene, const Options& options) {
   if (options.step) return dormand_prince_5.info.name;
   // A single link is cheap to evaluate, so that a series does not save time.
   if (n > 1 && !without_series(scene)) return taylor_radau5.info.name;
-  const std::vector<double> rtol = relative_tolerances(options, n);
-  const std::vector<double> atol = absolute_tolerances(options, n);
-  double least = 1.0;
-  for (std::size_t i = 0; i < rtol.size(); ++i) least = std::min(least, std::max(rtol[i], atol[i]));
-  return least < tight ? dop853_radau5.info.name : dopri5_radau5.info.name;
+  return tightest_tolerance(options, n) < tight ? dop853_radau5.info.name : dopri5_radau5.info.name;
 }
 
 }  // namespace pendcore

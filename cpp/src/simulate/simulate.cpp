@@ -17,6 +17,7 @@
 #include "simulate/checked_options.hpp"
 #include "simulate/ending_message.hpp"
 #include "simulate/initial_state.hpp"
+#include "simulate/kinks_of_run.hpp"
 #include "simulate/method_choice.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/steppers.hpp"
@@ -44,6 +45,7 @@ class SceneRun {
         atol_(absolute_tolerances(options_, scene.links.size())),
         stepper_(stepper_with_tolerances()),
         recorder_(solution, *stepper_, scene, passed_events) {
+    limits_.first_kink = first_kink_of(scene, equations_, options_, stepper_->dimension());
     const int degree = stepper_->interpolant_degree();
     if (solution.resumable == nullptr) {
       solution.dense.degree = degree;

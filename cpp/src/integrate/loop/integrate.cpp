@@ -38,7 +38,7 @@ class Run {
         discontinuities_(discontinuities),
         run_limits_(limits, integrator.t.high),
         resume_(stepper, integrator, resumable, observer, discontinuities, limits.begins_anew),
-        trial_(stepper, integrator, limits.fixed_step, discontinuities) {
+        trial_(stepper, integrator, limits, discontinuities) {
     has_quadratures_ = stepper.controlled() < stepper.dimension();
     if (has_quadratures_ || discontinuities != nullptr) make_room();
     stepper.keep_going = [this] {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <exception>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -36,6 +37,10 @@ struct IntegratorState {
   std::vector<double> discontinuities;  ///< Discontinuities::saved_state()
 };
 
+/// The share of an attempted step of size h from time t, s, at which a derivative of the motion
+/// jumps that the error of a step does not show; 1 if none does.
+using FirstKink = std::function<double(const Stepper& attempted, double t, double h)>;
+
 struct Limits {
   double t_end;
   double max_step = std::numeric_limits<double>::infinity();  ///< s
@@ -43,7 +48,8 @@ struct Limits {
   long long max_steps = std::numeric_limits<long long>::max();  ///< attempted, accepted or not
   double time_limit = std::numeric_limits<double>::infinity();  ///< s, of the clock on the wall
   Monitor monitor;
-  bool begins_anew = false;  ///< a continued run begins at the start again
+  FirstKink first_kink = {};  ///< steps end there; none if empty
+  bool begins_anew = false;   ///< a continued run begins at the start again
 };
 
 /// Where in an accepted step the run is to end, if anywhere.

@@ -34,9 +34,12 @@ int bad_component_of(Stepper& stepper, double t_new) {
 
 }  // namespace
 
-Trial::Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
+Trial::Trial(Stepper& stepper, IntegratorState& integrator, const Limits& limits,
              Discontinuities* discontinuities)
-    : stepper_(stepper), integrator_(integrator), fixed_step_(fixed_step) {
+    : stepper_(stepper),
+      integrator_(integrator),
+      fixed_step_(limits.fixed_step),
+      first_kink_(limits.first_kink) {
   if (discontinuities != nullptr) guards_ = std::make_unique<Guards>(stepper, *discontinuities);
 }
 
@@ -49,6 +52,10 @@ void Trial::attempt(double h) {
 Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
   crossing_ = {};
   look_for_bad_component();
+  if (first_kink_ && integrator_.trial_was_finite && !is_shortest) {
+    const double share = first_kink_(stepper_, t_, h_);
+    if (share < 1.0) return try_again_with(h_ * share);
+  }
   const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || at_any_error;
   if (!integrator_.trial_was_finite || !is_accepted) {
     return try_again_with(h_ * integrator_.control.reject(stepper_.info(), attempt_));

@@ -26,7 +26,7 @@ class Trial {
   };
 
   /// Tries steps of `integrator` and sets its `trial_was_finite`; `discontinuities` may be null.
-  Trial(Stepper& stepper, IntegratorState& integrator, bool fixed_step,
+  Trial(Stepper& stepper, IntegratorState& integrator, const Limits& limits,
         Discontinuities* discontinuities);
 
   /// Lets the method attempt a step of size h.
@@ -53,6 +53,7 @@ class Trial {
   Stepper& stepper_;
   IntegratorState& integrator_;
   bool fixed_step_;
+  const FirstKink& first_kink_;
   std::unique_ptr<Guards> guards_;  ///< null without discontinuities
   double t_ = 0.0;
   double h_ = 0.0;

@@ -58,6 +58,10 @@ class RungeKuttaFixed final : public Stepper {
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
 
   void set_new_state(const double* y) override { read(y, memory_.y_new); }
+  void get_new_derivative(double* dydt) const override {
+    if constexpr (!method.first_same_as_last) return Stepper::get_new_derivative(dydt);
+    write(memory_.k[stages - 1], dydt);
+  }
 
   void evaluate(double t, const double* y, double* dydt) override {
     evaluate_(&memory_.system, t, y, dydt);

@@ -179,6 +179,10 @@ class RungeKuttaInMemory final : public Stepper {
   void get_state(double* y) const override { write(memory_.y, y); }
   void get_derivative(double* dydt) const override { write(memory_.k, dydt); }
   void get_new_state(double* y) const override { write(memory_.y_new, y); }
+  void get_new_derivative(double* dydt) const override {
+    if constexpr (!method.first_same_as_last) return Stepper::get_new_derivative(dydt);
+    write(memory_.k + static_cast<std::ptrdiff_t>(stages - 1) * size_, dydt);
+  }
   void set_new_state(const double* y) override {
     if (compensated_) drop_low_parts(y, memory_.y_new, memory_.low_new);
     read(y, memory_.y_new);

@@ -1,0 +1,67 @@
+#include "simulate/kinks_of_run.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "arithmetic/instruction_set.hpp"
+#include "dynamics/ends_in_air.hpp"
+#include "simulate/checked_options.hpp"
+
+namespace pendcore {
+namespace {
+
+PENDCORE_INLINE void find_speeds(const EndsInAir<double>* air, double t, const double* y,
+                                 const double* dydt, EndsInAir<double>::Speeds* found) {
+  air->find(t, y, dydt, *found);
+}
+
+/// A state, and the speeds of the ends there.
+struct Ends {
+  std::vector<double> y{}, dydt{};
+  EndsInAir<double>::Speeds speeds{};
+
+  void find(const EndsInAir<double>& air, double t) {
+    static const auto find = fastest<&find_speeds>();
+    find(&air, t, y.data(), dydt.data(), &speeds);
+  }
+};
+
+/// Most steps begin where the one before ended.
+struct KinksOfRun {
+  EndsInAir<double> air{};
+  double tolerance = 0.0;
+  Ends start{}, end{};
+  std::vector<double> y{};  ///< at the start of the step
+
+  double operator()(const Stepper& attempted, double t, double h) {
+    if (!ends_at_kinks(attempted.info(), tolerance)) return 1.0;
+    attempted.get_state(y.data());
+    if (end.y == y) std::swap(start, end);
+    if (start.y != y || air.depend_on_time()) {
+      start.y = y;
+      attempted.get_derivative(start.dydt.data());
+      start.find(air, t);
+    }
+    attempted.get_new_state(end.y.data());
+    attempted.get_new_derivative(end.dydt.data());
+    end.find(air, t + h);
+    return air.first_kink(h, start.speeds, end.speeds);
+  }
+};
+
+}  // namespace
+
+FirstKink first_kink_of(const Scene& scene, const EquationsOfMotion& equations,
+                        const Options& options, int dimension) {
+  if (options.step) return {};
+  KinksOfRun kinks{.tolerance = tightest_tolerance(options, scene.links.size())};
+  kinks.air.prepare(scene, equations.effects.get());
+  if (kinks.air.count() == 0) return {};
+  kinks.air.put(scene);
+  kinks.y.assign(dimension, std::nan(""));
+  kinks.start = kinks.end = {.y = kinks.y, .dydt = kinks.y, .speeds = kinks.air.speeds()};
+  return kinks;
+}
+
+}  // namespace pendcore
