@@ -259,6 +259,31 @@ def test_a_law_that_changes_just_where_an_angle_is_reached_leaves_it_two_derivat
     np.testing.assert_array_equal(np.isnan(by.y[0, 0]), [False, True, False])
 
 
+@pytest.mark.parametrize("rtol", [1e-9, 1e-10, 1e-11, 1e-12])
+def test_an_impact_that_ends_a_run_after_which_steps_are_rejected(rtol: float) -> None:
+    drag = E.RodDrag(2, 1.2, 1.97, air_density=3.0, wind=(0.2, 2.4))
+    stop = E.JointStop(joint=1, range=(-0.5, 1.9), restitution=0.9)
+    links = [pc.Link(mass=0.73, length=0.77), pc.Link(mass=0.47, length=0.19)]
+    scene = pc.Scene(links=links, effects=[stop, drag])
+    found = []
+    for terminal in (False, True):
+        how: Any = {"rtol": rtol, "sensitivities": ["q0[1]"]}
+        turn = V.RateZero(joint=1, terminal=terminal)
+        sol = pc.simulate(scene, (0, 2), [-0.08, -0.29], [2.28, -0.27], events=[turn], **how)
+        found.append(sol.event_sensitivities()[0].t[0, 0])
+    np.testing.assert_allclose(found, -0.10362814, rtol=1e-6)
+
+
+@pytest.mark.parametrize("coulomb", [1e-6, 4e-6, 1e-5, 1e-4])
+def test_a_joint_that_hardly_rubs_turns_as_if_it_did_not(coulomb: float) -> None:
+    free = pc.simulate(TEXTBOOK, (0, 3), [0.3, 0.6], [0.5, 0.0], sensitivities=["q0[1]"],
+                       events=[V.RateZero(joint=1)], **EXACTLY).event_sensitivities()  # fmt: skip
+    scene = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=coulomb)])
+    how: Any = EXACTLY | {"sensitivities": ["q0[1]"], "events": [V.RateZero(joint=1)]}
+    rubbed = pc.simulate(scene, (0, 3), [0.3, 0.6], [0.5, 0.0], **how).event_sensitivities()
+    np.testing.assert_allclose(rubbed[0].t, free[0].t, rtol=2 * coulomb)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.3])
 def test_a_rod_that_comes_to_rest_at_its_stop_turns_at_each_impact(restitution: float) -> None:
     """All times go as g^(-1/2). What is 1e-7 s before the last bounce may be at rest already."""

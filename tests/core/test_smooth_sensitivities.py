@@ -35,8 +35,9 @@ def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch
     assert judged_smooth(28).kind == "wrong"
 
 
-@pytest.mark.parametrize("wind", [(2.0, 0.0), (0.0, 3.0), (5.0, -4.0)])
-@pytest.mark.parametrize("t_end", [0.3, 0.5])
+@pytest.mark.parametrize(
+    ("wind", "t_end"), [((2.0, 0.0), 0.3), ((0.0, 3.0), 0.5), ((5.0, -4.0), 0.3)]
+)
 def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> None:
     """Where an end of the rod turns into the wind, the motion and its changes have a kink."""
     names = ["q0[1]", "qd0[2]", "gravity", "effect[1].diameter", "effect[1].wind.x"]

@@ -41,6 +41,8 @@ struct MethodInfo {
   bool dense_output_is_series = false;  ///< the Taylor series of the solution itself
   std::string_view first_of_pair = {};  ///< the method with which a pair begins; else empty
   std::string_view second_of_pair = {};
+  /// The tolerance from which on steps end where the air's drag has a kink; 0: at none.
+  double ends_at_kinks_from = 0.0;
   /// The typical largest position error of a run as a multiple of rtol, measured on the four
   /// hundred scenes of tests/models/regular_scenes.py (seeds 200 to 599). 0 for methods that take
   /// fixed steps only: `error=` never takes them.

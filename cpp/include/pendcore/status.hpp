@@ -19,12 +19,13 @@ struct Statistics {
   long long nlu = 0;   ///< factorisations (implicit methods)
   long long accepted = 0;
   long long rejected = 0;
-  long long limited_by_tolerance = 0;  ///< accepted steps whose size the error control chose
-  long long limited_by_max_step = 0;   ///< accepted steps of max_step, or of a fixed step
-  long long limited_by_break = 0;      ///< accepted steps cut by the end or by a break point
-  double min_step = 0.0;               ///< s, the smallest accepted step, not cut (unless all are)
-  double max_step = 0.0;               ///< s, the largest, likewise
-  bool stiff = false;                  ///< stability, not accuracy, was found to limit the steps
+  /// Accepted steps whose size the error control chose, or a kink of drag.
+  long long limited_by_tolerance = 0;
+  long long limited_by_max_step = 0;  ///< accepted steps of max_step, or of a fixed step
+  long long limited_by_break = 0;     ///< accepted steps cut by the end or by a break point
+  double min_step = 0.0;              ///< s, the smallest accepted step, not cut (unless all are)
+  double max_step = 0.0;              ///< s, the largest, likewise
+  bool stiff = false;                 ///< stability, not accuracy, was found to limit the steps
 };
 
 enum class Status {

@@ -12,11 +12,6 @@ namespace {
 
 constexpr int samples = 9;  // of a step, with both ends
 
-PENDCORE_INLINE void find_speeds(const EndsInAir<double>* air, double t, const double* y,
-                                 const double* dydt, EndsInAir<double>::Speeds* found) {
-  air->find(t, y, dydt, *found);
-}
-
 }  // namespace
 
 std::vector<double> kinks_of_drag(const EndsInAir<double>& air, const WatchedStep& step,
@@ -26,7 +21,6 @@ std::vector<double> kinks_of_drag(const EndsInAir<double>& air, const WatchedSte
   if (ends == 0) return found;
   const auto size = static_cast<int>(step.y.size());
   static const auto sample = fastest<&sample_rows>();
-  static const auto find = fastest<&find_speeds>();
   std::array<double, samples> shares;
   for (int i = 0; i < samples; ++i) shares[i] = i / (samples - 1.0);
   std::vector<double> states(static_cast<std::size_t>(samples) * size);
@@ -36,8 +30,8 @@ std::vector<double> kinks_of_drag(const EndsInAir<double>& air, const WatchedSte
   const auto sample_speeds = [&](const double* thetas, int count) {
     sample(step.rows(), {}, 1.0, thetas, count, states.data(), size, step.degree);
     for (int i = 0; i < count; ++i) {
-      find(&air, t_start + thetas[i] * step.h, &states[static_cast<std::size_t>(i) * size],
-           no_derivative.data(), &there);
+      find_speeds(air, t_start + thetas[i] * step.h, &states[static_cast<std::size_t>(i) * size],
+                  no_derivative.data(), there);
       for (int end = 0; end < ends; ++end) speeds[i * ends + end] = there.w[end];
     }
   };

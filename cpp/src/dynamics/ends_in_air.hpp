@@ -6,6 +6,18 @@
 ///     w = n . (v - wind),   dw/dt = n . a - qd u . (v - wind)
 ///
 /// v and a are the velocity and the acceleration of the end, u = (c, s) and n = (-s, c).
+///
+/// If the law went on beyond the kink as before it, the force on the rod would be wrong by
+///
+///     2/3 k L |w|^3 / (|w| + |w_other|)
+///
+/// Here w is the speed that the end reaches, and w_other that of the other end. This force, at most
+/// the length away from the joint, acts for the shorter part of a step that a kink cuts in two, and
+/// at least for as long as the first stage counts. By what it does to the rate of a rod that is not
+/// connected to others, one knows whether the kink matters: in air that hardly moves, and near the
+/// ends of a step, it does not.
+///
+/// Drag alone has kinks that no guard sees, so that this names the effect.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +45,14 @@ class EndsInAir {
     for (const RodDrag* drag : drags_by_link(scene)) link_of_rod_.push_back(drag->link - 1);
     links_ = static_cast<int>(scene.links.size());
     length_.assign(scene.links.size());
-    for (Numbers* one : {&wind_x_, &wind_y_}) one->assign(link_of_rod_.size());
+    for (Numbers* one : {&wind_x_, &wind_y_, &strength_, &allowed_}) {
+      one->assign(link_of_rod_.size());
+    }
+  }
+  /// Takes the tolerances of the state, (2n): kinks matter that are larger. It comes before put().
+  void set_tolerances(const std::vector<double>& rtol, const std::vector<double>& atol) {
+    rtol_.assign(rtol.begin() + links_, rtol.end());
+    atol_.assign(atol.begin() + links_, atol.end());
   }
   /// Puts the constants of a scene into a lane.
   void put(const Scene& scene, int lane = 0) {
@@ -42,6 +61,12 @@ class EndsInAir {
     for (const RodDrag* drag : drags_by_link(scene)) {
       wind_x_.put(rod, lane, drag->wind[0]);
       wind_y_.put(rod, lane, drag->wind[1]);
+      const Link& link = scene.links[drag->link - 1];
+      const double k = 0.5 * drag->air_density * drag->drag_coefficient * drag->diameter;
+      const double inertia = link.inertia + link.mass * link.center * link.center;
+      const double cube = link.length * link.length * link.length;
+      strength_.put(rod, lane, 2.0 / 3.0 * k * cube / inertia);
+      if (!atol_.empty()) allowed_.put(rod, lane, link.length * atol_[drag->link - 1]);
       ++rod;
     }
   }
@@ -65,10 +90,9 @@ class EndsInAir {
   /// Computes them at a state (q, qd) with this derivative.
   PENDCORE_INLINE void find(const Number& t, const Number* y, const Number* dydt,
                             Speeds& found) const;
-  /// The share of a step of size h at which its first kink lies, or 1, from the speeds at its start
-  /// and its end. Kinks in the first and the last hundredth of a step do not count, and an
-  /// end that turns twice within a step is not noticed.
-  PENDCORE_INLINE Number first_kink(const Number& h, const Speeds& start, const Speeds& end) const;
+  /// The share of a step of size h at which its first kink lies that matters, or 1, from the speeds
+  /// at its start and its end. An end that turns twice within a step is not noticed.
+  PENDCORE_INLINE Number first_kink(const Number& h, const Speeds& first, const Speeds& last) const;
 
  private:
   using Numbers = RowsInMemory<Number, Number>;
@@ -79,6 +103,9 @@ class EndsInAir {
     std::ranges::stable_sort(drags, {}, &RodDrag::link);
     return drags;
   }
+  /// Whether an end has a kink within a step that matters.
+  PENDCORE_INLINE Condition<Number> matters(int end, const Number& h, const Speeds& first,
+                                            const Speeds& last) const;
   /// Where the cubic with these values, of two signs, and slopes at 0 and 1 is zero.
   PENDCORE_INLINE static Number share_of_zero(const Number& before, const Number& slope,
                                               const Number& after, const Number& last_slope);
@@ -87,6 +114,9 @@ class EndsInAir {
   int links_ = 0;
   std::vector<int> link_of_rod_;  ///< from 0, in their order
   Numbers length_, wind_x_, wind_y_;
+  Numbers strength_;                 ///< 2/3 k L^3/I, 1/m, of each rod about its joint
+  Numbers allowed_;                  ///< m/s, of a difference of speeds that is 0
+  std::vector<double> rtol_, atol_;  ///< of the rate of each link
 };
 
 template <class Number>
@@ -150,22 +180,53 @@ PENDCORE_INLINE Number EndsInAir<Number>::share_of_zero(const Number& before, co
 }
 
 template <class Number>
-PENDCORE_INLINE Number EndsInAir<Number>::first_kink(const Number& h, const Speeds& start,
-                                                     const Speeds& end) const {
-  constexpr double near_an_end = 0.01;  // across it, a step errs by less than a thousandth
+PENDCORE_INLINE Condition<Number> EndsInAir<Number>::matters(int end, const Number& h,
+                                                             const Speeds& first,
+                                                             const Speeds& last) const {
+  constexpr double share = 0.1;  // of what the tolerances allow
+  constexpr double weight_of_first_stage = 0.05;
+  const int rod = end / 2;
+  const int other = end ^ 1;
+  const auto least = [&](int i) __attribute__((always_inline)) {
+    const Number before = absolute(first.w[i]);
+    const Number after = absolute(last.w[i]);
+    return before < after ? before : after;
+  };
+  const Number turn_before = absolute(Number(first.w[end] - first.w[other]));
+  const Number turn_after = absolute(Number(last.w[end] - last.w[other]));
+  const Number turn = larger(turn_before, turn_after);
+  const Number allowed = fma(broadcast<Number>(rtol_[link_of_rod_[rod]]), turn, allowed_[rod]);
+  const Number whole = absolute(first.w[end]) + absolute(last.w[end]);
+  const Number w = least(end);
+  const Number wrong = fma(broadcast<Number>(weight_of_first_stage), whole, w);  // times h/whole
+  return is_less(Number(share * (allowed * whole) * (w + least(other))),
+                 Number(strength_[rod] * absolute(h) * (w * w * w) * wrong));
+}
+
+template <class Number>
+PENDCORE_INLINE Number EndsInAir<Number>::first_kink(const Number& h, const Speeds& first,
+                                                     const Speeds& last) const {
   const Number one = broadcast<Number>(1.0);
-  Number first = one;
-  for (int i = 0; i < count(); ++i) {
-    const Number before = start.w[i];
-    const Number after = end.w[i];
+  Number nearest = one;
+  for (int end = 0; end < count(); ++end) {
+    const Number before = first.w[end];
+    const Number after = last.w[end];
     const Condition<Number> turns = is_less(Number(before * after), Number{});
     if (!holds_somewhere(turns)) continue;
-    const Number zero = share_of_zero(before, h * start.slope[i], after, h * end.slope[i]);
-    const Condition<Number> counts = turns & is_less(broadcast<Number>(near_an_end), zero);
+    const Condition<Number> counts = turns & matters(end, h, first, last);
+    if (!holds_somewhere(counts)) continue;
+    const Number zero = share_of_zero(before, h * first.slope[end], after, h * last.slope[end]);
     const Number share = counts ? zero : one;
-    first = is_less(share, first) ? share : first;
+    nearest = is_less(share, nearest) ? share : nearest;
   }
-  return is_less(broadcast<Number>(1.0 - near_an_end), first) ? one : first;
+  // The loop would stretch a step that is hardly shorter than what is left (step_control.hpp).
+  const Number most = broadcast<Number>(0.98);
+  const Condition<Number> is_cut = is_less(nearest, one);
+  return is_cut & is_less(most, nearest) ? most : nearest;
 }
+
+/// The same for a single run, compiled for this processor.
+void find_speeds(const EndsInAir<double>& air, double t, const double* y, const double* dydt,
+                 EndsInAir<double>::Speeds& found);
 
 }  // namespace pendcore

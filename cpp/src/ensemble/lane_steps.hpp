@@ -183,7 +183,11 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   const Real h = next.h;
   const Integers is_right = is_at_most(found.squared_error, broadcast<Real>(1.0));
   Integers has_kink{};
-  if (first_kink != nullptr) has_kink = is_less(*first_kink, broadcast<Real>(1.0));
+  Real to_kink = h;
+  if (first_kink != nullptr) {
+    to_kink = h * *first_kink;
+    has_kink = is_less(absolute(to_kink), absolute(h)) & ~is_too_small(to_kink, lanes.t);
+  }
   const Integers is_accepted = is_right & ~has_kink & tried;
   const Integers is_rejected = ~is_accepted & tried;
 
@@ -193,7 +197,7 @@ PENDCORE_INLINE typename NextStep<width>::Integers finish_step(
   Real shorter = lanes.h;
   if ((detail::bits_of(is_rejected) & lanes.active) != 0) {
     shorter = h * factor_if_rejected(info, log2_error);
-    if (first_kink != nullptr) shorter = has_kink ? Real(h * *first_kink) : shorter;
+    if (first_kink != nullptr) shorter = has_kink ? to_kink : shorter;
   }
   const Real smallest = broadcast<Real>(StepControl::log2_smallest_error);
   lanes.log2_error_before =

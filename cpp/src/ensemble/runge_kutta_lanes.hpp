@@ -58,8 +58,8 @@ struct RungeKuttaLanes : LaneSteps<width> {
   typename EndsInAir<Real>::Speeds speeds, speeds_after;  ///< at the start of a step, and its end
   bool are_speeds_known = false;                          ///< at the start
   Real first_kink = {};                                   ///< as a share of the attempted step
-  /// Computes it. It is called, as it would part the registers of the step.
-  void (*find_first_kinks)(RungeKuttaLanes* all, const Real& h) = nullptr;
+  /// Is find_first_kinks() below: called, because written into a step it spills its registers.
+  void (*find_kinks)(RungeKuttaLanes* all, const Real& h) = nullptr;
   // For dense output:
   Block y_before[Memory::blocks] = {};      ///< the state before the last step
   Block rates_before[Memory::blocks] = {};  ///< its derivative
@@ -174,7 +174,7 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* 
     }
     const Integers all_tried = Integers{} - 1;
     const bool is_in_air = all->air.count() != 0;
-    if (is_in_air) all->find_first_kinks(all, next.h);
+    if (is_in_air) all->find_kinks(all, next.h);
     const Integers is_accepted =
         finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention,
                                    is_in_air ? &all->first_kink : nullptr);

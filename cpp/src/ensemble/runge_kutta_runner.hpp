@@ -30,8 +30,9 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     const double tolerance = tightest_tolerance(task.options, n_);
     if (ends_at_kinks(method.info, tolerance)) {
       all_.air.prepare(task.scene, all_.memory.system.dynamics.drives());
+      all_.air.set_tolerances(this->rtol_, this->atol_);
       for (int lane = 0; lane < width; ++lane) all_.air.put(task.scene, lane);
-      all_.find_first_kinks = only<&find_first_kinks<method, Equations, width>, set>();
+      all_.find_kinks = only<&find_first_kinks<method, Equations, width>, set>();
       all_.speeds = all_.speeds_after = all_.air.speeds();
     }
     for (int lane = 0; lane < width; ++lane) {

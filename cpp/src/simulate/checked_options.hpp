@@ -29,7 +29,7 @@ std::vector<double> relative_tolerances(const Options& options, std::size_t n);
 /// Throws std::invalid_argument for a wrong number of them.
 std::vector<double> absolute_tolerances(const Options& options, std::size_t n);
 
-/// The least of the larger of both over the components: by it, methods are chosen.
+/// The least of max(rtol, atol) over the components.
 double tightest_tolerance(const Options& options, std::size_t n);
 
 /// Throws std::invalid_argument for options with which no start of the scene can be run, except

@@ -4,26 +4,18 @@
 #include <utility>
 #include <vector>
 
-#include "arithmetic/instruction_set.hpp"
-#include "dynamics/ends_in_air.hpp"
 #include "simulate/checked_options.hpp"
 
 namespace pendcore {
 namespace {
 
-PENDCORE_INLINE void find_speeds(const EndsInAir<double>* air, double t, const double* y,
-                                 const double* dydt, EndsInAir<double>::Speeds* found) {
-  air->find(t, y, dydt, *found);
-}
-
-/// A state, and the speeds of the ends there.
+/// A state, its derivative, and the speeds of the ends there.
 struct Ends {
   std::vector<double> y{}, dydt{};
   EndsInAir<double>::Speeds speeds{};
 
   void find(const EndsInAir<double>& air, double t) {
-    static const auto find = fastest<&find_speeds>();
-    find(&air, t, y.data(), dydt.data(), &speeds);
+    find_speeds(air, t, y.data(), dydt.data(), speeds);
   }
 };
 
@@ -32,15 +24,16 @@ struct KinksOfRun {
   EndsInAir<double> air{};
   double tolerance = 0.0;
   Ends start{}, end{};
-  std::vector<double> y{};  ///< at the start of the step
+  std::vector<double> y{}, dydt{};  ///< at the start of the step
 
   double operator()(const Stepper& attempted, double t, double h) {
     if (!ends_at_kinks(attempted.info(), tolerance)) return 1.0;
     attempted.get_state(y.data());
-    if (end.y == y) std::swap(start, end);
-    if (start.y != y || air.depend_on_time()) {
+    attempted.get_derivative(dydt.data());
+    if (end.y == y && end.dydt == dydt) std::swap(start, end);
+    if (start.y != y || start.dydt != dydt || air.depend_on_time()) {
       start.y = y;
-      attempted.get_derivative(start.dydt.data());
+      start.dydt = dydt;
       start.find(air, t);
     }
     attempted.get_new_state(end.y.data());
@@ -58,8 +51,11 @@ FirstKink first_kink_of(const Scene& scene, const EquationsOfMotion& equations,
   KinksOfRun kinks{.tolerance = tightest_tolerance(options, scene.links.size())};
   kinks.air.prepare(scene, equations.effects.get());
   if (kinks.air.count() == 0) return {};
+  const std::size_t n = scene.links.size();
+  kinks.air.set_tolerances(relative_tolerances(options, n), absolute_tolerances(options, n));
   kinks.air.put(scene);
   kinks.y.assign(dimension, std::nan(""));
+  kinks.dydt = kinks.y;
   kinks.start = kinks.end = {.y = kinks.y, .dydt = kinks.y, .speeds = kinks.air.speeds()};
   return kinks;
 }

@@ -80,37 +80,57 @@ class Side(NamedTuple):
     rates: Floats
     """The rates of change of the state, (2n,)."""
 
+    def carried(self, by: float) -> Side:
+        """Return the same a little later, s: the angles go on, the rates hardly change."""
+        S, rates, n = self.S.copy(), self.rates.copy(), len(self.rates) // 2
+        S[:n] += by * S[n:]
+        rates[:n] += by * rates[n:]
+        return Side(S, rates)
 
-def moved_by_a_change(before: Side, after: Side) -> Floats | None:
-    """Return d(time)/d(name) of a change of laws between two sides, (m,); None if there is none.
 
-    The rates jump there from f- to f+. What is continuous, the angles at an impact and otherwise
-    the rates, tells by how much the time moves: ``(S+ - S-) dp + (f+ - f-) dt = 0``.
+def continuous_part(before: Side, after: Side) -> slice | None:
+    """Return which components of the state stay as they are where their rates jump; None if none.
+
+    These are the angles at an impact, and otherwise all, where accelerations jump.
     """
-    jumps, n = after.rates - before.rates, len(before.rates) // 2
-    for part in (slice(0, n), slice(n, 2 * n)):
-        if np.abs(jumps[part]).max() > JUMP * np.abs([before.rates, after.rates]).max():
-            c = part.start + int(np.abs(jumps[part]).argmax())
-            return np.asarray((before.S[c] - after.S[c]) / jumps[c])
-    return None
+    jumps, n = np.abs(after.rates - before.rates), len(before.rates) // 2
+    least = JUMP * np.abs([before.rates, after.rates]).max()
+    if jumps[:n].max() > least:
+        return slice(0, n)
+    return slice(0, 2 * n) if jumps.max() > least else None
+
+
+def moved_by_a_change(before: Side, after: Side, part: slice) -> Floats:
+    """Return d(time)/d(name) of a change of laws between two sides, (m,).
+
+    What is continuous tells by how much the time moves: ``(S+ - S-) dp + (f+ - f-) dt = 0``.
+    """
+    jumps = (after.rates - before.rates)[part]
+    c = int(np.abs(jumps).argmax())
+    return np.asarray((before.S[c] - after.S[c]) / jumps[c])
 
 
 def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     """Return the derivatives of the time and the state, (1 + 2n, m); NaN where there are none."""
     sides = along.sides(one.t)
-    moved = None if sides is None else moved_by_a_change(*sides)
-    if sides is None or moved is None:
+    jumps = one.y_before is not None
+    part = None if sides is None else continuous_part(*sides)
+    if sides is None or (part is None and not jumps):
         there = along.at(one.t)
-        dt = _crossing(event, one, there, along) * (1.0 if one.direction else np.nan)
+        dt = _crossing(event, one, there, along) * (1.0 if one.direction and not jumps else np.nan)
         return np.vstack([dt, there.S + np.outer(there.rates, dt)])
     before, after = sides
-    if not _is_by_the_jump(event, one):
+    if jumps or part is None:
+        part = slice(0, len(one.q))
+    if _is_by_the_jump(event, one):
+        dt = moved_by_a_change(before, after, part)
+    else:
         # The event lies where a law changes: for names that keep it there, it has a derivative.
-        of_event = _crossing(event, _before(one), before, along)
-        fastest = np.abs([before.rates, after.rates]).max()
-        sizes = np.abs(moved) + np.abs([before.S, after.S]).max(axis=(0, 1)) / fastest
-        moved = np.where(np.abs(of_event - moved) <= ALIKE * sizes, moved, np.nan)
-    return np.vstack([moved, after.S + np.outer(after.rates, moved)])
+        dt = _crossing(event, _before(one), before, along)
+        apart = after.S - before.S + np.outer(after.rates - before.rates, dt)
+        sizes = np.abs([before.S, after.S]).max(axis=(0, 1))
+        dt = np.where(np.abs(apart[part]).max(axis=0) <= ALIKE * sizes, dt, np.nan)
+    return np.vstack([dt, after.S + np.outer(after.rates, dt)])
 
 
 def _crossing(event: Event, one: Found, there: Side, along: _Along) -> Floats:
@@ -158,10 +178,13 @@ class _Along:
         sides = [t for time in times for t in self.beside(time)]
         inside = np.clip([start, *times, *sides], min(start, end), max(start, end))
         grid = sorted(set(inside.tolist()), reverse=end < start)
-        watch, other = derivatives_of(
-            solution, self.names, t_eval=grid, store=None, events=(),
-            max_steps=stats.accepted + stats.rejected + 3,
-        )  # fmt: skip
+        for more in (3, 30, 300):  # attempts beyond an event that ended the run
+            watch, other = derivatives_of(
+                solution, self.names, t_eval=grid, store=None, events=(),
+                max_steps=stats.accepted + stats.rejected + more,
+            )  # fmt: skip
+            if len(watch.values) == len(grid):
+                break
         rows = zip(watch.values, other.y.T, strict=True)
         self.rows: dict[float, tuple[Floats, Floats]] = dict(zip(grid, rows, strict=False))
 
@@ -175,7 +198,7 @@ class _Along:
         before, after = self.beside(t)
         if before not in self.rows or after not in self.rows:
             return None
-        return self.at(before), self.at(after)
+        return self.at(before).carried(t - before), self.at(after).carried(t - after)
 
     def at(self, t: float) -> Side:
         """Return the run at one of these times: after a jump, where there is one."""

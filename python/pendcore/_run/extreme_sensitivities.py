@@ -16,6 +16,7 @@ from pendcore._run.event_sensitivities import (
     BESIDE,
     LAST_BITS,
     Side,
+    continuous_part,
     moved_by_a_change,
     sensitivities_at_events,
 )
@@ -217,9 +218,9 @@ class _Around:
         Where no law changes, either the rate is zero or the time is fixed.
         """
         before, at, after = (self.at[t] for t in self.beside(place))
-        if (moved := moved_by_a_change(before, after)) is not None:
+        if (part := continuous_part(before, after)) is not None:
             side = before if place.is_before else after
-            return np.asarray(side.S[i] + side.rates[i] * moved)
+            return np.asarray(side.S[i] + side.rates[i] * moved_by_a_change(before, after, part))
         if place.beside and place.t == self.ends[1] and self.solution.status == "event":
             return np.asarray(self.at_the_last_event[i])
         return np.asarray(at.S[i])

@@ -675,8 +675,8 @@ class Solution:
             One for each event asked for, with ``t`` (k, m) and ``y`` (k, 2n, m) for the k times in
             ``events`` and the m names of ``sensitivity_names``. NaN where an event has no
             derivative: where it only touches zero (``direction`` 0), where it happens to fall on an
-            impact or another change of a law that a name moves by another amount, and where S has
-            none.
+            impact or another change of a law that a name moves by another amount, between the last
+            bounces before rest, some 1e-7 s apart, and where S has none.
 
         Raises
         ------

@@ -21,7 +21,7 @@ class Statistics(NamedTuple):
     rejected : int
         Steps that were tried again, shorter.
     limited_by_tolerance : int
-        Accepted steps of the size that accuracy allowed.
+        Accepted steps of the size that accuracy allowed. Those that end at a kink of drag count.
     limited_by_max_step : int
         Accepted steps of the size of ``max_step``, or of a fixed step.
     limited_by_break : int

@@ -21,7 +21,7 @@
 
 namespace pendcore {
 
-/// Whether a pivot has no acceleration, or only slopes of one that is constant.
+/// Says whether a pivot has no acceleration itself. It may have slopes of a constant one.
 inline bool stands_still(const PivotLawOf<AlongNames>& pivot) {
   const auto is_still = [](const PivotLawOf<AlongNames>::Axis& along) {
     return along.held.value == 0.0 && is_zero(along.slope) && is_zero(along.gain);

@@ -52,9 +52,12 @@ void Trial::attempt(double h) {
 Trial::Verdict Trial::judge(bool is_shortest, bool at_any_error) {
   crossing_ = {};
   look_for_bad_component();
+  // Before the error is judged: the kink may be its cause, which a step that ends there has not.
   if (first_kink_ && integrator_.trial_was_finite && !is_shortest) {
-    const double share = first_kink_(stepper_, t_, h_);
-    if (share < 1.0) return try_again_with(h_ * share);
+    const double to_kink = h_ * first_kink_(stepper_, t_, h_);
+    if (std::abs(to_kink) < std::abs(h_) && !is_too_small(to_kink, t_)) {
+      return try_again_with(to_kink);
+    }
   }
   const bool is_accepted = attempt_.squared_error <= 1.0 || fixed_step_ || at_any_error;
   if (!integrator_.trial_was_finite || !is_accepted) {

@@ -52,6 +52,7 @@ inline constexpr Tableau<13, 7, 3> dormand_prince_8 = {
              .shrink = 1.0 / 3.0,
              .growth = 6.0,
              .stability = 6.1,
+             .ends_at_kinks_from = 1e-7,
              .error_over_rtol = 0.4,
              .second_opinion = 2,
              .line = {.color = "red", .dash = "--", .marker = "s"}},
