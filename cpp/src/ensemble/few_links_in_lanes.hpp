@@ -17,6 +17,7 @@ struct FewLinksInLanes {
   using Links = EachLink<Real, n>;
   using Effects = EffectsInLanes<Links, Real>;
   static constexpr bool is_called = coupled || n > 3;
+  static constexpr bool may_have_drag = true;
   /// Where they are not called: a step loops over its stages around one copy of them.
   static constexpr bool is_long = true;
 

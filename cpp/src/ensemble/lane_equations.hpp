@@ -12,7 +12,7 @@
 ///     drives()                   what moves the pivot; null without effects
 ///
 /// and those of Runge-Kutta methods `is_called`: whether a step calls them (CalledEquations); if
-/// not, they are written into it.
+/// not, they are written into it; and `may_have_drag`.
 #pragma once
 
 #include <memory>
@@ -58,6 +58,7 @@ template <class Real, bool couples_alone>
 struct OneLinkInLanes
     : LoadedSinglePendulum<EffectsInLanes<EachLink<Real, 1>, Real>, couples_alone> {
   static constexpr bool is_called = !couples_alone;
+  static constexpr bool may_have_drag = !couples_alone;
 
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     if (std::holds_alternative<SinglePendulum>(equations.form)) return couples_alone;
@@ -89,6 +90,7 @@ struct OneLinkInLanes
 template <class Real>
 struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
   static constexpr bool is_called = false;
+  static constexpr bool may_have_drag = false;
 
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     return std::holds_alternative<DoublePendulum>(equations.form);
@@ -105,6 +107,7 @@ struct TwoBareLinksInLanes : DoublePendulumEquations<Two<Real>, Real> {
 template <class Real, Parts parts>
 struct TwoLinksInLanes : LoadedDoublePendulum<EffectsInLanes<Two<Real>, Real>, parts> {
   static constexpr bool is_called = parts != Parts::couples;
+  static constexpr bool may_have_drag = is_called;
 
   static bool has(const Scene& /*scene*/, const EquationsOfMotion& equations) {
     return std::holds_alternative<OfRun>(equations.form) && equations.are_steady() &&

@@ -24,6 +24,7 @@ namespace pendcore {
 template <class Real, class Row>
 struct CalledEquations {
   using Links = Row;
+  static constexpr bool may_have_drag = true;
 
   std::shared_ptr<void> form;  ///< the form as a first-order system
   /// Computes the derivative of a state (q, qd).
@@ -51,6 +52,8 @@ struct RungeKuttaLanes : LaneSteps<width> {
   static constexpr int stages = Memory::stages;
   static constexpr int links = links_in_row<Block>;
   static constexpr int size = 2 * links;
+  static constexpr bool may_end_at_kinks =
+      Equations::may_have_drag && method.info.ends_at_kinks_from > 0.0;
   static_assert(method.first_same_as_last && method.info.error_order > 0);
 
   Memory memory;
@@ -173,7 +176,7 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* 
       }
     }
     const Integers all_tried = Integers{} - 1;
-    const bool is_in_air = all->air.count() != 0;
+    const bool is_in_air = All::may_end_at_kinks && all->air.count() != 0;
     if (is_in_air) all->find_kinks(all, next.h);
     const Integers is_accepted =
         finish_step<method, width>(*all, *interval, next, found, runs_alone, all_tried, attention,
@@ -188,7 +191,7 @@ PENDCORE_INLINE Attention take_steps(RungeKuttaLanes<method, Equations, width>* 
       select(is_accepted, memory.y_new[i], memory.y[i]);
       select(is_accepted, memory.k[All::stages - 1][i], memory.k[0][i]);
     }
-    for (int end = 0; end < all->air.count(); ++end) {
+    for (int end = 0; is_in_air && end < all->air.count(); ++end) {
       all->speeds.w.set(end, is_accepted ? all->speeds_after.w[end] : all->speeds.w[end]);
       all->speeds.slope.set(end,
                             is_accepted ? all->speeds_after.slope[end] : all->speeds.slope[end]);

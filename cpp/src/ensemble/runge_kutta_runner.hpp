@@ -27,13 +27,8 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
       : LaneLoop<width>(task, method.info.name), n_(task.scene.links.size()) {
     all_.memory.system.dynamics = std::move(equations);
     this->prepare(all_.memory.system.dynamics);
-    const double tolerance = tightest_tolerance(task.options, n_);
-    if (ends_at_kinks(method.info, tolerance)) {
-      all_.air.prepare(task.scene, all_.memory.system.dynamics.drives());
-      all_.air.set_tolerances(this->rtol_, this->atol_);
-      for (int lane = 0; lane < width; ++lane) all_.air.put(task.scene, lane);
-      all_.find_kinks = only<&find_first_kinks<method, Equations, width>, set>();
-      all_.speeds = all_.speeds_after = all_.air.speeds();
+    if constexpr (All::may_end_at_kinks) {
+      if (ends_at_kinks(method.info, tightest_tolerance(task.options, n_))) watch_kinks(task.scene);
     }
     for (int lane = 0; lane < width; ++lane) {
       for (int i = 0; i < 2; ++i) {
@@ -44,6 +39,13 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
   }
 
  private:
+  void watch_kinks(const Scene& scene) {
+    all_.air.prepare(scene, all_.memory.system.dynamics.drives());
+    all_.air.set_tolerances(this->rtol_, this->atol_);
+    for (int lane = 0; lane < width; ++lane) all_.air.put(scene, lane);
+    all_.find_kinks = only<&find_first_kinks<method, Equations, width>, set>();
+    all_.speeds = all_.speeds_after = all_.air.speeds();
+  }
   static void put_row(Block& row, int lane, const double* from) {
     for (int i = 0; i < All::links; ++i) {
       auto of_link = number_of(row, i);

@@ -47,10 +47,10 @@ struct KinksOfRun {
 
 FirstKink first_kink_of(const Scene& scene, const EquationsOfMotion& equations,
                         const Options& options, int dimension) {
-  if (options.step) return {};
+  if (options.step || !equations.effects || std::ranges::empty(effects_of<RodDrag>(scene)))
+    return {};
   KinksOfRun kinks{.tolerance = tightest_tolerance(options, scene.links.size())};
   kinks.air.prepare(scene, equations.effects.get());
-  if (kinks.air.count() == 0) return {};
   const std::size_t n = scene.links.size();
   kinks.air.set_tolerances(relative_tolerances(options, n), absolute_tolerances(options, n));
   kinks.air.put(scene);
