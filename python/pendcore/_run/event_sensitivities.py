@@ -113,15 +113,16 @@ def moved_by_a_change(before: Side, after: Side, part: slice) -> Floats:
 def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     """Return the derivatives of the time and the state, (1 + 2n, m); NaN where there are none."""
     sides = along.sides(one.t)
-    jumps = one.y_before is not None
-    part = None if sides is None else continuous_part(*sides)
-    if sides is None or (part is None and not jumps):
-        there = along.at(one.t)
-        dt = _crossing(event, one, there, along) * (1.0 if one.direction and not jumps else np.nan)
-        return np.vstack([dt, there.S + np.outer(there.rates, dt)])
-    before, after = sides
-    if jumps or part is None:
+    part = sides and continuous_part(*sides)
+    if one.y_before is not None:
         part = slice(0, len(one.q))
+    if part is None:  # no law changes there
+        there = along.at(one.t)
+        dt = _crossing(event, one, there, along) * (1.0 if one.direction else np.nan)
+        return np.vstack([dt, there.S + np.outer(there.rates, dt)])
+    if sides is None:
+        return np.full((1 + len(one.y), len(along.names)), np.nan)
+    before, after = sides
     if _is_by_the_jump(event, one):
         dt = moved_by_a_change(before, after, part)
     else:
