@@ -244,19 +244,33 @@ def test_an_impact_turns_a_rod_round(terminal: bool) -> None:
     np.testing.assert_allclose(by.y, [after], rtol=0, atol=1e-9)
 
 
-def test_a_law_that_changes_just_where_an_angle_is_reached_leaves_it_two_derivatives() -> None:
-    """One name moves the angle alone, another one both."""
-    (t,), _ = moved(pc.Scene(links=[ROD]), (0, 1), 0.5, 0.0, ["gravity"], BOTTOM)
+def test_an_angle_that_is_reached_just_when_a_table_jumps_or_at_a_stop() -> None:
+    """Its time has a derivative, except by a name that moves it away from the stop."""
+    (t,), alone = moved(pc.Scene(links=[ROD]), (0, 1), 0.5, 0.0, ["gravity"], BOTTOM)
     table = E.Table(t=[0, t, 3], torque=[0.0, 6.0, 6.0], hold=True)
     scene = pc.Scene(links=[ROD], effects=[E.Motor(joint=1, table=table)])
     _, by = moved(scene, (0, 1), 0.5, 0.0, ["gravity", "q0[1]"], BOTTOM)
-    assert np.isnan(by.t).all()
-    assert np.isnan(by.y).all()
+    np.testing.assert_allclose(by.t[:, :1], alone.t, rtol=1e-9)
+    np.testing.assert_allclose(by.y[0, 0], 0, atol=1e-9)
+    assert np.isnan(by.y[0, 1]).all()
     scene = pc.Scene(links=[ROD], effects=[STOP_OF_ROD])
     names = ["q0[1]", "effect[1].range.upper", "gravity"]
     _, by = moved(scene, (0, 1), 0.5, 0.0, names, V.LinkAngle(1, 1.2))
     np.testing.assert_array_equal(np.isnan(by.t[0]), [False, True, False])
     np.testing.assert_array_equal(np.isnan(by.y[0, 0]), [False, True, False])
+
+
+def test_an_angle_that_is_reached_just_when_a_joint_comes_to_stick() -> None:
+    """Rates are the same on both sides, so that its time has a derivative."""
+    rubs = E.DryJointFriction(joint=2, coulomb=1.2, static=2.0)
+    scene, start = TEXTBOOK.replace(effects=[rubs]), ([0.3, 0.5], [0.0, 4.0])
+    sticks = pc.simulate(scene, (0, 1), *start, events=[V.RateZero(joint=2)], **EXACTLY).events[0]
+    event = V.LinkAngle(1, float(sticks[0].q[0]))
+    _, by = moved(scene, (0, 1), *start, ["q0[1]", "effect[1].coulomb"], event)
+    assert by.t[0, 0] == pytest.approx(-0.50006, rel=1e-4)
+    np.testing.assert_allclose(by.y[0, :2, 0], [0, -0.9754], rtol=0, atol=1e-4)
+    assert np.isfinite(by.t[0]).all()
+    assert np.isnan(by.y[0, 2:]).all()
 
 
 @pytest.mark.parametrize("rtol", [1e-9, 1e-10, 1e-11, 1e-12])

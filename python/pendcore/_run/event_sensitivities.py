@@ -125,13 +125,24 @@ def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     before, after = sides
     if _is_by_the_jump(event, one):
         dt = moved_by_a_change(before, after, part)
-    else:
-        # The event lies where a law changes: for names that keep it there, it has a derivative.
-        dt = _crossing(event, _before(one), before, along)
-        apart = after.S - before.S + np.outer(after.rates - before.rates, dt)
-        sizes = np.abs([before.S, after.S]).max(axis=(0, 1))
-        dt = np.where(np.abs(apart[part]).max(axis=0) <= ALIKE * sizes, dt, np.nan)
-    return np.vstack([dt, after.S + np.outer(after.rates, dt)])
+        return np.vstack([dt, after.S + np.outer(after.rates, dt)])
+    # The event lies where a law changes. For names that keep it there, it has a derivative; by
+    # others, what changes alike on both sides.
+    dt, dt_after = (
+        _crossing(event, at, side, along) for at, side in ((_before(one), before), (one, after))
+    )
+    kept, left, right = (
+        np.vstack([by, side.S + np.outer(side.rates, by)])
+        for by, side in ((dt, after), (dt, before), (dt_after, after))
+    )
+    S, rates = np.abs([before.S, after.S]), np.abs([before.rates, after.rates])
+    apart = after.S - before.S + np.outer(after.rates - before.rates, dt)
+    stays = np.abs(apart[part]).max(axis=0) <= ALIKE * S.max(axis=(0, 1))
+    sizes = np.maximum(np.abs(left), np.abs(right))
+    sizes[0] += S.max(axis=(0, 1)) / rates.max()
+    sizes[1:] = sizes[1:].max(axis=0)
+    both = np.where(np.abs(left - right) <= ALIKE * sizes, left, np.nan)
+    return np.where(stays, kept, both)
 
 
 def _crossing(event: Event, one: Found, there: Side, along: _Along) -> Floats:

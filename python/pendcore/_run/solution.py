@@ -674,9 +674,10 @@ class Solution:
         list of EventSensitivities
             One for each event asked for, with ``t`` (k, m) and ``y`` (k, 2n, m) for the k times in
             ``events`` and the m names of ``sensitivity_names``. NaN where an event has no
-            derivative: where it only touches zero (``direction`` 0), where it happens to fall on an
-            impact or another change of a law that a name moves by another amount, between the last
-            bounces before rest, some 1e-7 s apart, and where S has none.
+            derivative: where it only touches zero (``direction`` 0); by a name that moves it away
+            from an impact on which it falls, to rounding; the rates, by a name that moves it away
+            from where a joint sticks or another law changes; between the last bounces before rest,
+            some 5e-8 s apart; and where S has none.
 
         Raises
         ------
