@@ -20,7 +20,6 @@
 /// Drag alone has kinks that no guard sees, so that this names the effect.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "arithmetic/pack.hpp"
@@ -99,8 +98,11 @@ class EndsInAir {
 
   static std::vector<const RodDrag*> drags_by_link(const Scene& scene) {
     std::vector<const RodDrag*> drags;
-    for (const RodDrag& drag : effects_of<RodDrag>(scene)) drags.push_back(&drag);
-    std::ranges::stable_sort(drags, {}, &RodDrag::link);
+    for (int link = 1; link <= static_cast<int>(scene.links.size()); ++link) {
+      for (const RodDrag& drag : effects_of<RodDrag>(scene)) {
+        if (drag.link == link) drags.push_back(&drag);
+      }
+    }
     return drags;
   }
   /// Whether an end has a kink within a step that matters.
