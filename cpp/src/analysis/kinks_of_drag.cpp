@@ -26,7 +26,7 @@ std::vector<double> kinks_of_drag(const EndsInAir<double>& air, const WatchedSte
   std::vector<double> states(static_cast<std::size_t>(samples) * size);
   std::vector<double> speeds(static_cast<std::size_t>(samples) * ends);
   const std::vector<double> no_derivative(size);  // slopes are not read here
-  EndsInAir<double>::Speeds there = air.speeds();
+  EndsInAir<double>::Speeds there = air.room_for_speeds();
   const auto sample_speeds = [&](const double* thetas, int count) {
     sample(step.rows(), {}, 1.0, thetas, count, states.data(), size, step.degree);
     for (int i = 0; i < count; ++i) {

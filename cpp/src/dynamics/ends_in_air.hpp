@@ -61,10 +61,9 @@ class EndsInAir {
       wind_x_.put(rod, lane, drag->wind[0]);
       wind_y_.put(rod, lane, drag->wind[1]);
       const Link& link = scene.links[drag->link - 1];
-      const double k = 0.5 * drag->air_density * drag->drag_coefficient * drag->diameter;
       const double inertia = link.inertia + link.mass * link.center * link.center;
       const double cube = link.length * link.length * link.length;
-      strength_.put(rod, lane, 2.0 / 3.0 * k * cube / inertia);
+      strength_.put(rod, lane, 2.0 / 3.0 * drag->k() * cube / inertia);
       if (!atol_.empty()) allowed_.put(rod, lane, link.length * atol_[drag->link - 1]);
       ++rod;
     }
@@ -76,11 +75,11 @@ class EndsInAir {
   /// Two for each rod.
   int count() const { return 2 * static_cast<int>(link_of_rod_.size()); }
 
-  /// What is known of the ends at a state.
+  /// The speeds of all ends at a state, and their slopes.
   struct Speeds {
     RowsInMemory<Number, Number> w, slope;  ///< m/s and m/s^2, of each end
   };
-  Speeds speeds() const {
+  Speeds room_for_speeds() const {
     Speeds room;
     room.w.assign(count());
     room.slope.assign(count());

@@ -10,7 +10,7 @@ class RodDragBehaviour final : public EffectOf<RodDrag> {
   using EffectOf::EffectOf;
 
   std::optional<AnyLaw> law(int /*mode*/, const LinkConstants& on) const override {
-    const double k = 0.5 * given_.air_density * given_.drag_coefficient * given_.diameter;
+    const double k = given_.k();
     return RodDragLaw<double>{.minus_k = -k * on.length / 3.0,
                               .minus_k_arm = -k * on.length * on.length / 12.0,
                               .wind_x = given_.wind[0],

@@ -44,7 +44,7 @@ class RungeKuttaRunner final : public LaneLoop<width_on(set)> {
     all_.air.set_tolerances(this->rtol_, this->atol_);
     for (int lane = 0; lane < width; ++lane) all_.air.put(scene, lane);
     all_.find_kinks = only<&find_first_kinks<method, Equations, width>, set>();
-    all_.speeds = all_.speeds_after = all_.air.speeds();
+    all_.speeds = all_.speeds_after = all_.air.room_for_speeds();
   }
   static void put_row(Block& row, int lane, const double* from) {
     for (int i = 0; i < All::links; ++i) {

@@ -35,7 +35,7 @@ class Stepper : public StepOutput {
 
   virtual void get_derivative(double* dydt) const = 0;  ///< that of the state before the step
   virtual void set_new_state(const double* y) = 0;      ///< replaces the state after it
-  /// That of the state after it, for methods whose last stage it is.
+  /// The right-hand side at the state after the step: some methods have it as their last stage.
   virtual void get_new_derivative(double* /*dydt*/) const {
     throw std::logic_error("this method has no stage at the end of a step");
   }

@@ -56,7 +56,7 @@ FirstKink first_kink_of(const Scene& scene, const EquationsOfMotion& equations,
   kinks.air.put(scene);
   kinks.y.assign(dimension, std::nan(""));
   kinks.dydt = kinks.y;
-  kinks.start = kinks.end = {.y = kinks.y, .dydt = kinks.y, .speeds = kinks.air.speeds()};
+  kinks.start = kinks.end = {.y = kinks.y, .dydt = kinks.y, .speeds = kinks.air.room_for_speeds()};
   return kinks;
 }
 

@@ -103,7 +103,7 @@ def continuous_part(before: Side, after: Side) -> slice | None:
 def moved_by_a_change(before: Side, after: Side, part: slice) -> Floats:
     """Return d(time)/d(name) of a change of laws between two sides, (m,).
 
-    What is continuous tells by how much the time moves: ``(S+ - S-) dp + (f+ - f-) dt = 0``.
+    The components in ``part`` do not jump, and so ``(S+ - S-) dp + (f+ - f-) dt = 0`` gives dt.
     """
     jumps = (after.rates - before.rates)[part]
     c = int(np.abs(jumps).argmax())
@@ -126,23 +126,30 @@ def _of_one(event: Event, one: Found, along: _Along) -> Floats:
     if _is_by_the_jump(event, one):
         dt = moved_by_a_change(before, after, part)
         return np.vstack([dt, after.S + np.outer(after.rates, dt)])
-    # The event lies where a law changes. For names that keep it there, it has a derivative; by
-    # others, what changes alike on both sides.
-    dt, dt_after = (
-        _crossing(event, at, side, along) for at, side in ((_before(one), before), (one, after))
-    )
-    kept, left, right = (
-        np.vstack([by, side.S + np.outer(side.rates, by)])
-        for by, side in ((dt, after), (dt, before), (dt_after, after))
-    )
+    dt_before = _crossing(event, _before(one), before, along)
+    dt_after = _crossing(event, one, after, along)
+    return _where_a_law_changes(before, after, part, dt_before, dt_after)
+
+
+def _where_a_law_changes(
+    before: Side, after: Side, part: slice, dt_before: Floats, dt_after: Floats
+) -> Floats:
+    """Return the derivatives of an event that lies on a change of a law, (1 + 2n, m).
+
+    By names that keep the event there, it has the derivatives of the side after the change; by
+    others, those that both sides have in common.
+    """
     S, rates = np.abs([before.S, after.S]), np.abs([before.rates, after.rates])
-    apart = after.S - before.S + np.outer(after.rates - before.rates, dt)
+    apart = after.S - before.S + np.outer(after.rates - before.rates, dt_before)
     stays = np.abs(apart[part]).max(axis=0) <= ALIKE * S.max(axis=(0, 1))
+    kept = np.vstack([dt_before, after.S + np.outer(after.rates, dt_before)])
+    left = np.vstack([dt_before, before.S + np.outer(before.rates, dt_before)])
+    right = np.vstack([dt_after, after.S + np.outer(after.rates, dt_after)])
     sizes = np.maximum(np.abs(left), np.abs(right))
     sizes[0] += S.max(axis=(0, 1)) / rates.max()
     sizes[1:] = sizes[1:].max(axis=0)
-    both = np.where(np.abs(left - right) <= ALIKE * sizes, left, np.nan)
-    return np.where(stays, kept, both)
+    common = np.where(np.abs(left - right) <= ALIKE * sizes, left, np.nan)
+    return np.where(stays, kept, common)
 
 
 def _crossing(event: Event, one: Found, there: Side, along: _Along) -> Floats:

@@ -18,6 +18,8 @@ struct RodDrag {
   double air_density = 1.225;               ///< rho, kg/m^3
   std::array<double, 2> wind = {0.0, 0.0};  ///< m/s, x right and y down
 
+  double k() const { return 0.5 * air_density * drag_coefficient * diameter; }  ///< kg/m^2
+
   static constexpr EffectInfo info{
       .name = "RodDrag",
       .kind = "rod_drag",
