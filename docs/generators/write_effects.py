@@ -37,6 +37,7 @@ TRUST = "[trust.md](../background/trust.md#points-where-a-law-changes)"
 WHERE = {
     "dry": TRUST,
     "impact": TRUST,
+    "drag": TRUST,
     "motor": "[conventions.md](../reference/conventions.md#angles-and-torques-of-another-source)",
     "user": "[Derivatives](../how_to/linearize.md)",
 }
