@@ -55,16 +55,16 @@ def test_drag_turns_round_in_a_step(wind: tuple[float, float], t_end: float) -> 
 
 def test_a_bend_is_passed_twice_in_milliseconds() -> None:
     """The rate rises to 3e-4 rad/s above zero, where quadratic friction has a kink, and falls."""
-    wave = {"amplitude": 3.0, "angular_frequency": 9.0, "phase": np.pi / 2}
+    wave = {"amplitude": 3.0, "angular_frequency": 9.0, "phase": np.pi - 0.2}
     names = {"q0[1]": 1.0, "qd0[1]": 1.0, "effect[2].damping2": 1.0}
     case = RandomRun(
-        bodies=[uniform_rod(1.0, 1.0)], gravity=0.0, q0=[0.0], qd0=[-1.138538], t_end=0.4,
+        bodies=[uniform_rod(1.0, 1.0)], gravity=0.0, q0=[0.0], qd0=[-0.0196385], t_end=0.05,
         described=[("motor", {"joint": 1, "sinusoid": wave}),
                    ("viscous_joint", {"joint": 1, "damping": 0.0, "damping2": 1.0})],
         changes=names,
     )  # fmt: skip
     end, found, _ = by_pendcore(case, rtol=1e-14, atol=1e-17)
-    for longest in (0.02, 1e-4):
+    for longest in (0.03, 5e-4):
         right_end, right = by_differences(case, names, 1e-17, longest)
         np.testing.assert_allclose(end, right_end, rtol=0, atol=1e-14)
         np.testing.assert_allclose(found.sum(axis=1), right, rtol=0, atol=1e-13)
