@@ -114,9 +114,8 @@ def simulate(
         raise no_time_span(t_span) from None
     if "events" in asked:
         asked["events"] = [event._as_pair() for event in events_asked_for(asked["events"])]
-    wanted = asked.pop("sensitivities", None) if "sensitivities" in asked else None
     names: tuple[str, ...] = ()
-    if wanted is not None:
+    if "sensitivities" in asked and (wanted := asked.pop("sensitivities")) is not None:
         names = listed_names("sensitivities", wanted, "q0[1]")
     if error is not None:
         require_options(asked, simulate)
@@ -129,9 +128,7 @@ def simulate(
         return solution
     progress = asked.pop("progress", None)
     report: Any = ProgressBar() if progress is None else callback(progress)
-    watch = None
-    if names:
-        watch = _core.Sensitivities(scene._compiled, list(names))
+    watch = _core.Sensitivities(scene._compiled, list(names)) if names else None
     try:
         run = _core.simulate(scene._compiled, q0, qd0, t_start, t_end, asked, report, warn, watch)
     except TypeError:
