@@ -14,12 +14,12 @@ from __future__ import annotations
 import json
 import random
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable
 from functools import partial
 from math import inf
 from pathlib import Path
 from time import perf_counter
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import pendcore as pc
@@ -43,6 +43,7 @@ OPTIONS_OF_TRIALS = {
     if not (option.chosen_for_error or name in ("on_failure", "error", "progress"))
 }
 Timed: TypeAlias = Callable[..., object]
+Key = TypeVar("Key", bound=Hashable)
 # The table has a row for each of these: its words, its key, and the goal, where there is one: a
 # number and the least share of the scenes that keep it.
 ROWS: list[tuple[str, str, tuple[float, float] | None]] = [
@@ -99,7 +100,7 @@ def times(one: Regular) -> dict[str, float]:
         timed |= seconds
         verified = ["run", *seconds]
     timed["all"] = partial(one.run, error=one.error)
-    least = least_times(timed)
+    least = least_times(timed, ROUNDS)
     fastest = min(least[name] for name in best)
     return {
         "run_time": least["run"] / fastest,
@@ -131,10 +132,10 @@ def with_correction(made: Timed, start: Start, strategy: Strategy, scale: float)
     return lambda: made(correction=strategy.correction(start, scale))
 
 
-def least_times(timed: dict[str, Timed]) -> dict[str, float]:
+def least_times(timed: dict[Key, Timed], rounds: int) -> dict[Key, float]:
     """Return the least time of each, s; they take turns."""
     least = dict.fromkeys(timed, inf)
-    for number in range(ROUNDS):
+    for number in range(rounds):
         for name in random.Random(number).sample([*timed], len(timed)):
             begin = perf_counter()
             timed[name]()
@@ -161,15 +162,11 @@ def table(found: list[dict[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_progress(scenes: Iterable[int]) -> Iterable[int]:
+def main() -> None:
     from tqdm import tqdm
 
-    return tqdm(scenes, unit="scene", disable=not sys.stderr.isatty())
-
-
-def main() -> None:
     found = []
-    for seed in with_progress(SCENES):
+    for seed in tqdm(SCENES, unit="scene", disable=None):
         one = regular(seed)
         found.append(outcome(one) | times(one))
     (ROOT / "docs/records/asked_errors.json").write_text(json.dumps(found, indent=1) + "\n")

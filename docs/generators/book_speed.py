@@ -35,8 +35,9 @@ from measure import Timing, interleave  # noqa: E402
 
 Floats = npt.NDArray[np.float64]
 BOOK, START, SPAN = pc.Scene.textbook(), (np.pi / 4, np.pi / 3), (0.0, 5.0)
-TOLERANCES = {"1e-3": (1e-3, 1e-6), "1e-6": (1e-6, 1e-9), "1e-9": (1e-9, 1e-12)}
-"""Relative and absolute; the first are the defaults of ode45, which the book takes."""
+BY_CORE = partial(pc.simulate, BOOK, SPAN, START)
+TOLERANCES = {f"1e-{k}": {"rtol": 10.0**-k, "atol": 10.0 ** (-k - 3)} for k in (3, 6, 9)}
+"""The first are the defaults of ode45, which the book takes."""
 WAYS = {
     "inline": "Octave, inline function",
     "file": "Octave, function file, as the book's",
@@ -98,45 +99,34 @@ def numpy_module() -> dict[str, Any]:
     return names
 
 
-def solvers(module: dict[str, Any]) -> dict[str, Callable[[float, float], Any]]:
-    """Return what solves the case in this process at a relative and an absolute tolerance."""
+def solvers(module: dict[str, Any]) -> dict[str, Callable[..., Any]]:
+    """Return what solves the case in this process with `rtol` and `atol`."""
     from scipy.integrate import solve_ivp
 
-    def by_core(rtol: float, atol: float, method: str) -> pc.Solution:
-        return pc.simulate(
-            BOOK, q0=START, qd0=0.0, t_span=SPAN, method=method, rtol=rtol, atol=atol
-        )
-
-    def by_scipy(rtol: float, atol: float) -> Any:
-        state = [*START, 0.0, 0.0]
-        return solve_ivp(module["right_hand_side"], SPAN, state, rtol=rtol, atol=atol)
-
     return {
-        "numpy": by_scipy,
-        "core": partial(by_core, method="ode45"),
-        "default": partial(by_core, method="auto"),
+        "numpy": partial(solve_ivp, module["right_hand_side"], SPAN, [*START, 0.0, 0.0]),
+        "core": partial(BY_CORE, method="ode45"),
+        "default": partial(BY_CORE, method="auto"),
     }
 
 
 def looked_at(
-    octave: Conversation, here: dict[str, Callable[[float, float], Any]]
+    octave: Conversation, here: dict[str, Callable[..., Any]]
 ) -> dict[tuple[str, str], dict[str, float]]:
     """Return right-hand sides and error of every way at every tolerance.
 
     The error is the larger of the two angles' errors at the end, rad, against a far tighter run.
     """
-    exact = pc.simulate(
-        BOOK, q0=START, qd0=0.0, t_span=SPAN, method="taylor", rtol=1e-15, atol=1e-16
-    ).q[-1]
+    exact = BY_CORE(method="taylor", rtol=1e-15, atol=1e-16).q[-1]
     found = {}
     for named, pair in TOLERANCES.items():
         for way in WAYS:
             if way in here:
-                solution = here[way](*pair)
+                solution = here[way](**pair)
                 count = getattr(solution, "nfev", None) or solution.stats.nfev
                 end = solution.y[:2, -1]
             else:
-                said = octave.ask(f"look {way} {pair[0]} {pair[1]}").split()
+                said = octave.ask(f"look {way} {pair['rtol']} {pair['atol']}").split()
                 count, end = int(said[0]), np.array(said[1:], float)
             error = float(np.abs(end - exact).max())
             found[way, named] = {"right_hand_sides": int(count), "error": error}
@@ -187,7 +177,6 @@ def record(rounds: int) -> dict[str, Any]:
     """Measure it all."""
     import scipy
     import sympy
-    from tqdm import tqdm
 
     begun, module = time.perf_counter(), numpy_module()
     here = solvers(module)
@@ -198,14 +187,13 @@ def record(rounds: int) -> dict[str, Any]:
             runs: dict[Any, Any] = {}
             for named, pair in TOLERANCES.items():
                 for way in WAYS:
-                    request = f"solve {way} {pair[0]} {pair[1]}"
-                    runs["solve", way, named] = (
-                        _timed(partial(here[way], *pair)) if way in here else Asked(octave, request)
-                    )
+                    request = f"solve {way} {pair['rtol']} {pair['atol']}"
+                    asked = Asked(octave, request)
+                    run = _timed(partial(here[way], **pair)) if way in here else asked
+                    runs["solve", way, named] = run
             for (way, count), run in right_hand_sides(octave, cpp, module).items():
                 runs["call", way, count] = run
-            turns = tqdm(range(rounds), unit="round", disable=not sys.stderr.isatty())
-            timings = interleave(runs, turns, BURST, SECONDS_A_RUN)
+            timings = interleave(runs, rounds, BURST, SECONDS_A_RUN)
             versions = {"octave": octave.ask("version"), "scipy": scipy.__version__}
         finally:
             octave.close()
@@ -303,11 +291,7 @@ TABLES = {"solves": solves_table, "calls": calls_table, "once": once_table}
 
 def figure(found: dict[str, Any], path: Path) -> None:
     """Draw the least times as bars, with their numbers."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
     axes = new_axes((11, 3.9), columns=2, sharey=True)
-    sheet: Any = axes[0].figure
     every = [row["least"] for row in found["solves"]]
     colors = [LIGHT.ochre] * 3 + [LIGHT.quiet] + [LIGHT.blue] * 2
     for part, named in zip(axes, ("1e-3", "1e-9"), strict=True):
@@ -320,7 +304,7 @@ def figure(found: dict[str, Any], path: Path) -> None:
         part.set_xlabel("time of a run of 5 s (s); ×: faster than inline")
         part.set_title(f"relative tolerance {named}")
     axes[0].invert_yaxis()
-    sheet.savefig(path, dpi=110)
+    axes[0].figure.savefig(path, dpi=110)
 
 
 def main() -> None:

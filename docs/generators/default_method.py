@@ -11,22 +11,21 @@ Python included.
 from __future__ import annotations
 
 import json
-import random
 import sys
-from collections.abc import Callable, Iterable
+from functools import partial
 from math import inf
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 import pendcore as pc
+from asked_errors import least_times
 from page_part import rewrite
-from pendcore._accuracy.position_error import time_grid
+from tqdm import tqdm
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
-from regular_scenes import EXACT, REGULAR, growth, scene_and_start  # noqa: E402
+from regular_scenes import EXACT, REGULAR, Regular, growth, scene_and_start  # noqa: E402
 
 SCENES = range(1200, 1400)
 """Seeds other than those from which the bounds of accuracy/method_choice.py were measured."""
@@ -46,33 +45,20 @@ ERRORS = (1e-4, 1e-6, 1e-8, 1e-10)
 
 
 def timed(
-    ways: dict[str, dict[str, Any]], rounds: int, arguments: tuple[Any, ...]
-) -> tuple[dict[str, pc.Solution], dict[str, float]]:
-    """Run all ways in turns; return their last solutions and their shortest times, s."""
+    ways: dict[str, dict[str, Any]], arguments: tuple[Any, ...]
+) -> tuple[dict[str, pc.Solution], dict[str, float], dict[str, float]]:
+    """Run all ways in turns; return their last solutions, their errors, their least times, s."""
+    scene = Regular(arguments, inf, {}, [])
+    scene.known.update({name: scene.run(method=name, **EXACT).q for name in METHODS[1:]})
     solutions: dict[str, pc.Solution] = {}
-    seconds = dict.fromkeys(ways, inf)
-    times = time_grid(*arguments[1])
-    for number in range(rounds):
-        for name in random.Random(number).sample([*ways], len(ways)):
-            begin = perf_counter()
-            solutions[name] = pc.simulate(*arguments, t_eval=times, progress=False, **ways[name])
-            seconds[name] = min(seconds[name], perf_counter() - begin)
-    return solutions, seconds
+    times = scene.times
 
+    def run(name: str) -> None:
+        solutions[name] = pc.simulate(*arguments, t_eval=times, progress=False, **ways[name])
 
-def exact(arguments: tuple[Any, ...]) -> Callable[[pc.Solution], float]:
-    """Return a function that measures an error against a method that is not the solution's."""
-    times = time_grid(*arguments[1])
-    known = {
-        method: pc.simulate(*arguments, t_eval=times, method=method, **EXACT).q
-        for method in METHODS[1:]
-    }
-
-    def error(solution: pc.Solution) -> float:
-        other = "dop853" if solution.method.startswith("taylor") else "taylor"
-        return float(solution.scene.distances(solution.q, known[other]).max())
-
-    return error
+    seconds = least_times({name: partial(run, name) for name in ways}, ROUNDS)
+    errors = {name: scene.error_of(solution) for name, solution in solutions.items()}
+    return solutions, errors, seconds
 
 
 def of_scene(seed: int) -> dict[str, Any]:
@@ -80,12 +66,11 @@ def of_scene(seed: int) -> dict[str, Any]:
     rng = np.random.default_rng(seed)
     while growth(*(arguments := scene_and_start(rng))) >= REGULAR:
         pass
-    error = exact(arguments)
-    solutions, seconds = timed(WAYS, ROUNDS, arguments)
+    solutions, errors, seconds = timed(WAYS, arguments)
     return {
         "links": len(arguments[0].links),
         "method": solutions[YARDSTICK].method,
-        "error": {name: error(solution) for name, solution in solutions.items()},
+        "error": errors,
         "time": {name: one / seconds[YARDSTICK] for name, one in seconds.items()},
     }
 
@@ -95,14 +80,12 @@ def of_chain(n: int) -> dict[str, Any]:
     links = [pc.Link(mass=1.0, length=1.0)] * n
     scene = pc.Scene(links=links, effects=[pc.effects.ViscousJoint(joint=1, damping=0.01)])
     arguments = (scene, (0.0, SPANS[n]), np.linspace(0.6, 1.0, n), 0.0)
-    error = exact(arguments)
     ways = {
         f"{method} {k}": {"method": method, "rtol": 10.0 ** (-k / 2), "atol": 10.0 ** (-k / 2 - 3)}
         for method in METHODS
         for k in range(4, 26)
     }
-    solutions, seconds = timed(ways, ROUNDS, arguments)
-    errors = {name: error(solution) for name, solution in solutions.items()}
+    _, errors, seconds = timed(ways, arguments)
 
     def least(method: str, wanted: float) -> float:
         names = [name for name in ways if name.split()[0] == method and errors[name] <= wanted]
@@ -139,15 +122,9 @@ def table_of_chains(found: list[dict[str, Any]]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_progress(items: Iterable[int], unit: str) -> Iterable[int]:
-    from tqdm import tqdm
-
-    return tqdm(items, unit=unit, disable=not sys.stderr.isatty())
-
-
 def main() -> None:
-    scenes = [of_scene(seed) for seed in with_progress(SCENES, "scene")]
-    chains = [of_chain(n) for n in with_progress(SPANS, "chain")]
+    scenes = [of_scene(seed) for seed in tqdm(SCENES, unit="scene", disable=None)]
+    chains = [of_chain(n) for n in tqdm(SPANS, unit="chain", disable=None)]
     record = {"scenes": scenes, "chains": chains}
     (ROOT / "docs/records/default_method.json").write_text(json.dumps(record, indent=1) + "\n")
     tables = {"default_scenes": table_of_scenes(scenes), "default_chains": table_of_chains(chains)}

@@ -19,7 +19,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
@@ -171,7 +171,6 @@ def unresolved(found: dict[str, Any], times: Floats) -> list[float]:
 
 def draw(found: dict[str, Any], path: Path) -> None:
     """Draw when a link first turns over, what is not resolved, and what has no value."""
-    mpl.use("Agg")
     never = ~np.isfinite(found["flip"]) & ~found["forbidden"]
     blanks = {"did not turn over": never, "energy forbids it": found["forbidden"]}
     shown = Shown("first turn over, in sqrt(l/g)", found["flip"] / UNIT, blanks, is_log=True)
@@ -180,8 +179,7 @@ def draw(found: dict[str, Any], path: Path) -> None:
     (axes,) = new_axes((8.6, 7.0))
     draw_map(axes, across, up, shown, found["resolved"], {})
     axes.set(xticks=range(-180, 181, 60), yticks=range(-180, 181, 60))
-    sheet: Any = axes.figure
-    sheet.savefig(path, dpi=110)
+    plt.savefig(path, dpi=110)
 
 
 def page(record: dict[str, Any]) -> str:

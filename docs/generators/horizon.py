@@ -16,7 +16,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
@@ -153,14 +153,11 @@ def table(found: dict[str, Any]) -> str:
 
 def draw_run(path: Path) -> None:
     """Draw one run, what is past its horizon, and its error: true, estimated, largest so far."""
-    from matplotlib.figure import Figure
-
     run = pc.simulate(BOOK, SPAN, START)
     times = np.linspace(*SPAN, 281)
     true = np.abs(run(times)[:2].T - truth(times)).max(axis=1)
     found, valid = run.estimate_error(), run.valid_until(LIMIT)
-    above, middle, below = new_axes((7.2, 6.4), 3, new_figure=Figure, height_ratios=[1, 1, 1.5])
-    sheet: Any = above.figure
+    above, middle, below = new_axes((7.2, 6.4), 3, height_ratios=[1, 1, 1.5])
     run.plot(ax=[above, middle], horizon=LIMIT)
     for axis in (above, middle):
         axis.set_xlabel("")
@@ -180,15 +177,12 @@ def draw_run(path: Path) -> None:
     below.set(xlabel="t (s)", ylabel="error of the angles (rad)", xlim=SPAN, ylim=(1e-13, 1e3))
     grid(below)
     legend_above(below)
-    sheet.savefig(path, dpi=110)
+    plt.savefig(path, dpi=110)
 
 
 def draw_trusted(found: dict[str, Any], path: Path) -> None:
     """Draw how long runs are trusted against how long they are right."""
-    from matplotlib.figure import Figure
-
-    (axis,) = new_axes((5.4, 5.2), new_figure=Figure)
-    sheet: Any = axis.figure
+    (axis,) = new_axes((5.4, 5.2))
     marks = dict(zip(RTOLS, ["v", "^", "o", "s"], strict=True))
     for one in found["trusted"]:
         if one["method"] != "dopri5":
@@ -206,24 +200,20 @@ def draw_trusted(found: dict[str, Any], path: Path) -> None:
     axis.set_aspect("equal")
     grid(axis)
     legend_above(axis)
-    sheet.savefig(path, dpi=110)
+    plt.savefig(path, dpi=110)
 
 
 def draw_exponents(spectrum: pc.LyapunovExponents, path: Path) -> None:
     """Draw the finite-time spectrum."""
-    from matplotlib.figure import Figure
-
-    (axis,) = new_axes((6.4, 3.8), new_figure=Figure)
-    sheet: Any = axis.figure
+    (axis,) = new_axes((6.4, 3.8))
     for line, style in zip(spectrum.plot(axis), ["-", "--", "-.", ":"], strict=True):
         line.set_linestyle(style)
     axis.set_xscale("log")
     axis.set_ylim(-4, 4)
-    sheet.savefig(path, dpi=110)
+    plt.savefig(path, dpi=110)
 
 
 def main() -> None:
-    mpl.use("Agg")
     spectrum = pc.lyapunov(BOOK, (0, 1000), START, t_eval=np.geomspace(0.5, 1000, 400))
     work = pc.horizon_work(
         BOOK, q0=START, t_span=(0, 30), limit=LIMIT, time_limit=600, progress=True

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,6 @@ TO_ABSOLUTE = np.kron(np.eye(2), np.tri(2))
 EULER = mujoco.mjtIntegrator.mjINT_EULER
 IMPLICIT = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
 START = [f"{kind}[{i}]" for kind in ("q0", "qd0") for i in (1, 2)]
-Jacobian = Callable[[Any, Any, Any], np.ndarray]
 
 
 def driven(torques: Iterable[float]) -> pc.Scene:
@@ -39,18 +39,15 @@ def driven(torques: Iterable[float]) -> pc.Scene:
     return pc.Scene.textbook().replace(effects=motors)
 
 
-def of_the_motion(dt: float) -> Jacobian:
-    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
-        names = [*START, "effect[1].constant"]
-        sol = pc.simulate(driven(torques), (0, dt), q, qd, rtol=1e-13, atol=1e-16, store="end",
-                          sensitivities=names)  # fmt: skip
-        assert sol.sensitivities is not None
-        return sol.sensitivities[-1]
-
-    return jacobian
+def of_the_motion(dt: float, q: Any, qd: Any, torques: Any) -> np.ndarray:
+    names = [*START, "effect[1].constant"]
+    sol = pc.simulate(driven(torques), (0, dt), q, qd, rtol=1e-13, atol=1e-16, store="end",
+                      sensitivities=names)  # fmt: skip
+    assert sol.sensitivities is not None
+    return sol.sensitivities[-1]
 
 
-def of_mujoco(dt: float, integrator: Any) -> Jacobian:
+def of_mujoco(integrator: Any, dt: float, q: Any, qd: Any, torques: Any) -> np.ndarray:
     spec = mujoco_models.chain([1.0, 1.0], [1.0, 1.0], 9.807)
     spec.option.timestep, spec.option.integrator = dt, integrator
     for joint in (1, 2):
@@ -59,66 +56,51 @@ def of_mujoco(dt: float, integrator: Any) -> Jacobian:
     spec.option.disableflags = int(mujoco_models.EVERYTHING) & ~left_on
     model = spec.compile()
     data = mujoco.MjData(model)
-
-    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
-        data.qpos, data.qvel = np.diff(q, prepend=0.0), np.diff(qd, prepend=0.0)
-        data.ctrl = torques
-        A, B = np.zeros((4, 4)), np.zeros((4, 2))
-        mujoco.mjd_transitionFD(model, data, 1e-6, True, A, B, None, None)  # centred
-        A = TO_ABSOLUTE @ A @ np.linalg.inv(TO_ABSOLUTE)
-        return np.hstack([A, TO_ABSOLUTE @ B[:, :1]])
-
-    return jacobian
+    data.qpos, data.qvel = np.diff(q, prepend=0.0), np.diff(qd, prepend=0.0)
+    data.ctrl = torques
+    A, B = np.zeros((4, 4)), np.zeros((4, 2))
+    mujoco.mjd_transitionFD(model, data, 1e-6, True, A, B, None, None)  # centred
+    A = TO_ABSOLUTE @ A @ np.linalg.inv(TO_ABSOLUTE)
+    return np.hstack([A, TO_ABSOLUTE @ B[:, :1]])
 
 
-def of_python_control(dt: float) -> Jacobian:
+def of_python_control(dt: float, q: Any, qd: Any, torques: Any) -> np.ndarray:
     """The equations as a nonlinear system of python-control, which takes forward differences."""
 
-    def rates(t: float, x: Any, u: Any, params: Any) -> np.ndarray:
-        scene = driven([u[0], params["second torque"]])
+    def rates(t: float, x: Any, u: Any, _: Any) -> np.ndarray:
+        scene = driven([u[0], torques[1]])
         return np.hstack([x[2:], scene.accelerations(t, x[:2], x[2:])])
 
     motion = control.nlsys(rates, None, inputs=1, states=4)
-
-    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
-        held = {"second torque": torques[1]}
-        here = control.linearize(motion, np.hstack([q, qd]), torques[:1], params=held)
-        system = here.sample(dt)
-        return np.hstack([system.A, system.B])
-
-    return jacobian
+    system = control.linearize(motion, np.hstack([q, qd]), torques[:1]).sample(dt)
+    return np.hstack([system.A, system.B])
 
 
-def of_the_linear_system(dt: float) -> Jacobian:
-    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
-        system = driven(torques).linearize(q, qd, inputs=[1]).discretize(dt)
-        return np.hstack([system.A, system.B])
-
-    return jacobian
+def of_the_linear_system(dt: float, q: Any, qd: Any, torques: Any) -> np.ndarray:
+    system = driven(torques).linearize(q, qd, inputs=[1]).discretize(dt)
+    return np.hstack([system.A, system.B])
 
 
-def of_runs(dt: float) -> Jacobian:
+def of_runs(dt: float, q: Any, qd: Any, torques: Any) -> np.ndarray:
     """Central differences of 1e-6 between runs with the usual tolerances."""
 
     def end(x: Any) -> np.ndarray:
         sol = pc.simulate(driven(x[4:]), (0, dt), x[:2], x[2:4], store="end")
         return np.hstack([sol.q[-1], sol.qd[-1]])
 
-    def jacobian(q: Any, qd: Any, torques: Any) -> np.ndarray:
-        here = np.hstack([q, qd, torques])
-        moves = 1e-6 * np.eye(5, len(here))
-        return np.array([(end(here + one) - end(here - one)) / 2e-6 for one in moves]).T
-
-    return jacobian
+    here = np.hstack([q, qd, torques])
+    moves = 1e-6 * np.eye(5, len(here))
+    return np.array([(end(here + one) - end(here - one)) / 2e-6 for one in moves]).T
 
 
-WAYS: dict[str, Callable[[float], Jacobian]] = {
-    "MuJoCo, `mjd_transitionFD`, Euler": lambda dt: of_mujoco(dt, EULER),
-    "the same, `implicitfast`": lambda dt: of_mujoco(dt, IMPLICIT),
+WAYS: dict[str, Callable[..., np.ndarray]] = {
+    "MuJoCo, `mjd_transitionFD`, Euler": partial(of_mujoco, EULER),
+    "the same, `implicitfast`": partial(of_mujoco, IMPLICIT),
     "python-control, `linearize(...).sample(dt)`": of_python_control,
     "`scene.linearize(...).discretize(dt)`": of_the_linear_system,
     "central differences of `pc.simulate`": of_runs,
 }
+"""Each gets the step, s, angles, rates and torques."""
 
 
 def states(rng: np.random.Generator, *, moving: bool) -> list[tuple[Any, Any, Any]]:
@@ -145,11 +127,10 @@ def main() -> None:
         cells = []
         for drawn in kinds:
             for dt in STEPS:
-                exact, found = of_the_motion(dt), way(dt)
                 errors = [
-                    np.abs(found(*state) - right).max() / np.abs(right).max()
+                    np.abs(way(dt, *state) - right).max() / np.abs(right).max()
                     for state in drawn
-                    for right in [exact(*state)]
+                    for right in [of_the_motion(dt, *state)]
                 ]
                 cells.append(f"{np.median(errors):.0e} ({max(errors):.0e})")
         lines.append(f"| {name} | {' | '.join(cells)} |\n".replace("e-0", "e-"))

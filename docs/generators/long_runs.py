@@ -153,7 +153,7 @@ def tables(found: dict[str, Any]) -> str:
 def figure(found: dict[str, Any], path: Path) -> None:
     """Draw the drift of the textbook's case, and the growth of the rms over the starts."""
     plt.style.use(sheet())
-    axes = new_axes((9, 3.6), columns=2, new_figure=plt.figure)
+    axes = new_axes((9, 3.6), columns=2)
     for name, color in (("rounded", LIGHT.ochre), ("compensated", LIGHT.blue)):
         one = found[name]
         times = np.linspace(0, one["drift"]["steps"] * STEP, len(one["drift"]["series"]))

@@ -11,7 +11,6 @@ pendcore, and pendcore's for heyoka.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 import pendcore as pc
+from asked_errors import least_times
 from page_part import rewrite
 
 ROOT = Path(__file__).parents[2]
@@ -31,7 +31,7 @@ CENTER, INERTIA = 0.45, 0.08
 """Not those of uniform rods, whose centres would move with their lengths."""
 ROD = pc.Link(mass=1.0, length=1.0, center=CENTER, inertia=INERTIA)
 SCENE = pc.Scene(links=[ROD, ROD])
-Way = Callable[[float], np.ndarray]
+Run = Callable[[], np.ndarray]
 
 
 def pendulum() -> tuple[Any, Any, list[Any]]:
@@ -48,66 +48,52 @@ def pendulum() -> tuple[Any, Any, list[Any]]:
     return list(zip(variables, rates, strict=True)), list(variables), parameters
 
 
-def of_heyoka(names: list[str]) -> Callable[[float], Way]:
-    def way(tolerance: float) -> Way:
-        equations, variables, parameters = pendulum()
-        by = variables + parameters[: len(names) - 4]
-        system = hy.var_ode_sys(equations, by, order=1) if names else equations
-        values = [9.807, 1.0, 1.0, INERTIA, INERTIA, 1.0]
-        run = hy.taylor_adaptive(system, [*Q0, *QD0], pars=values, tol=tolerance, fast_math=True)
-        start = run.state.copy()
+def of_heyoka(names: list[str], tolerance: float) -> Run:
+    equations, variables, parameters = pendulum()
+    by = variables + parameters[: len(names) - 4]
+    system = hy.var_ode_sys(equations, by, order=1)
+    values = [9.807, 1.0, 1.0, INERTIA, INERTIA, 1.0]
+    run = hy.taylor_adaptive(system, [*Q0, *QD0], pars=values, tol=tolerance, fast_math=True)
+    start = run.state.copy()
 
-        def derivatives(_: float) -> np.ndarray:
-            run.time, run.state[:] = 0.0, start
-            states = run.propagate_grid(TIMES)[-1]
-            return states[:, 4:].reshape(len(TIMES), 4, -1)
+    def derivatives() -> np.ndarray:
+        run.time, run.state[:] = 0.0, start
+        states = run.propagate_grid(TIMES)[-1]
+        return states[:, 4:].reshape(len(TIMES), 4, -1)
 
-        return derivatives
-
-    return way
+    return derivatives
 
 
-def of_pendcore(names: list[str]) -> Callable[[float], Way]:
-    def way(tolerance: float) -> Way:
-        more = {"sensitivities": names} if names else {}
-        how: Any = {"method": "taylor", "rtol": tolerance, "atol": tolerance / 1000} | more
-
-        def derivatives(_: float) -> np.ndarray:
-            sol = pc.simulate(SCENE, (0, 5), Q0, QD0, t_eval=TIMES, **how)
-            return np.empty(0) if sol.sensitivities is None else sol.sensitivities
-
-        return derivatives
-
-    return way
+def of_pendcore(names: list[str], tolerance: float) -> Run:
+    more = {"sensitivities": names} if names else {}
+    how: Any = {"method": "taylor", "rtol": tolerance, "atol": tolerance / 1000} | more
+    return lambda: pc.simulate(SCENE, (0, 5), Q0, QD0, t_eval=TIMES, **how).sensitivities
 
 
-def of_differences(names: list[str]) -> Callable[[float], Way]:
-    def way(tolerance: float) -> Way:
-        how: Any = {"method": "taylor", "rtol": tolerance, "atol": tolerance / 1000}
+def of_differences(names: list[str], tolerance: float) -> Run:
+    how: Any = {"method": "taylor", "rtol": tolerance, "atol": tolerance / 1000}
 
-        def end(name: str, by: float) -> np.ndarray:
-            scene, y = SCENE, np.array([*Q0, *QD0])
-            if name in STARTS:
-                y[STARTS.index(name)] += by
-            else:
-                scene = scene.with_parameters({name: scene.parameters()[name] + by})
-            return pc.simulate(scene, (0, 5), y[:2], y[2:], t_eval=TIMES, **how).y.T
+    def end(name: str, by: float) -> np.ndarray:
+        scene, y = SCENE, np.array([*Q0, *QD0])
+        if name in STARTS:
+            y[STARTS.index(name)] += by
+        else:
+            scene = scene.with_parameters({name: scene.parameters()[name] + by})
+        return pc.simulate(scene, (0, 5), y[:2], y[2:], t_eval=TIMES, **how).y.T
 
-        def derivatives(_: float) -> np.ndarray:
-            by = 1e-5
-            return np.stack([(end(x, by) - end(x, -by)) / (2 * by) for x in names], axis=2)
+    def derivatives() -> np.ndarray:
+        by = 1e-5
+        return np.stack([(end(x, by) - end(x, -by)) / (2 * by) for x in names], axis=2)
 
-        return derivatives
-
-    return way
+    return derivatives
 
 
-def loosest(way: Callable[[float], Way], right: np.ndarray, error: float) -> tuple[Way, float]:
+def loosest(way: Callable[[float], Run], right: np.ndarray, error: float) -> tuple[Run, float]:
     """The run of the loosest tolerance that keeps an error, or of the best one; and its error."""
-    found: list[tuple[float, Way]] = []
+    found: list[tuple[float, Run]] = []
     for tolerance in 10.0 ** -np.arange(6, 15.5, 0.5):
         run = way(tolerance)
-        off = np.abs(run(0.0) - right).max() / np.abs(right).max()
+        off = np.abs(run() - right).max() / np.abs(right).max()
         found.append((off, run))
         if off <= error:
             break
@@ -115,15 +101,9 @@ def loosest(way: Callable[[float], Way], right: np.ndarray, error: float) -> tup
     return run, off
 
 
-def times(runs: list[Way]) -> list[float]:
+def times(runs: list[Run]) -> list[float]:
     """The least time of each, taken in turns, s."""
-    best = [np.inf] * len(runs)
-    for _ in range(TURNS):
-        for k, run in enumerate(runs):
-            began = time.perf_counter()
-            run(0.0)
-            best[k] = min(best[k], time.perf_counter() - began)
-    return best
+    return [*least_times(dict(enumerate(runs)), TURNS).values()]
 
 
 def by_method() -> str:
@@ -134,12 +114,9 @@ def by_method() -> str:
         took = np.empty((3, 3))
         for k, rtol in enumerate((1e-6, 1e-9, 1e-12)):
             how: Any = {"method": method, "rtol": rtol, "atol": rtol / 1000, "store": "end"}
-            runs = [
-                partial(lambda names, how, _: pc.simulate(SCENE, (0, 20), Q0, QD0, **how | names),
-                        {"sensitivities": names} if names else {}, how)
-                for names in ([], STARTS, STARTS + MORE)
-            ]  # fmt: skip
-            took[:, k] = times(runs)
+            run = partial(pc.simulate, SCENE, (0, 20), Q0, QD0, **how)
+            by_names = [partial(run, sensitivities=names) for names in (STARTS, STARTS + MORE)]
+            took[:, k] = times([run, *by_names])
         for names, of_run in zip((4, 10), took[1:] / took[0], strict=True):
             cells = " | ".join(f"{x:.1f}" for x in of_run)
             lines.append(f"| {f'`{method}`' if names == 4 else ''} | {names} | {cells} |\n")
@@ -156,12 +133,13 @@ def beside_heyoka() -> str:
             "central differences of `pc.simulate`": of_differences}  # fmt: skip
     cells: dict[str, list[str]] = {name: [] for name in ways}
     for names in (STARTS, STARTS + MORE):
-        tightest = {name: ways[name](names)(1e-15)(0.0) for name in list(ways)[:2]}
-        ours, theirs = tightest.values()
+        ours, theirs = (way(names, 1e-15)() for way in (of_pendcore, of_heyoka))
         for error in (1e-8, 1e-11):
-            runs = [loosest(ways[name](names), ours if name.startswith("heyoka") else theirs, error)
-                    for name in ways]  # fmt: skip
-            plain = of_pendcore([])(1e-12 if error < 1e-9 else 1e-9)
+            runs = [
+                loosest(partial(way, names), ours if way is of_heyoka else theirs, error)
+                for way in ways.values()
+            ]
+            plain = of_pendcore([], 1e-12 if error < 1e-9 else 1e-9)
             of_run, *took = times([plain, *(run for run, _ in runs)])
             for name, (_, off), spent in zip(ways, runs, took, strict=True):
                 missed = f", {off:.0e} off" if off > error else ""

@@ -46,8 +46,6 @@ extensions = [
     "repository_pages",
 ]
 exclude_patterns = ["site", "generators", "records", "figures"]
-root_doc = "index"
-source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
@@ -79,12 +77,9 @@ html_theme_options = {
     "navbar_persistent": ["search-button"],
     "header_links_before_dropdown": 6,
     "show_toc_level": 2,
-    "show_prev_next": True,
     "secondary_sidebar_items": {"**": ["page-toc"], "index": [], "gallery/index": []},
     "footer_start": ["copyright"],
     "footer_end": [],
-    "pygments_light_style": "a11y-high-contrast-light",
-    "pygments_dark_style": "a11y-high-contrast-dark",
 }
 
 (HERE / "_static/house.css").write_text(css_variables(when_dark='html[data-theme="dark"]'))

@@ -4,22 +4,11 @@ from __future__ import annotations
 
 import inspect
 import shutil
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pendcore
-from pendcore import (
-    build,
-    case_files,
-    effects,
-    events,
-    messages,
-    methods,
-    options,
-    plotting,
-    reducers,
-    sampling,
-)
 
 GROUPS = {
     "Scenes": ["Scene", "Link", "Linearization", "Mobility", "Explanation"],
@@ -42,16 +31,16 @@ GROUPS = {
 }  # fmt: skip
 
 MODULES = {
-    "Effects": effects,
-    "Events": events,
-    "What ensembles keep": reducers,
-    "Random starts": sampling,
-    "Methods": methods,
-    "Options of a run": options,
-    "Figures": plotting,
-    "For extras: messages, checks, files": messages,
-    "For extras: case files": case_files,
-    "This build": build,
+    "Effects": "effects",
+    "Events": "events",
+    "What ensembles keep": "reducers",
+    "Random starts": "sampling",
+    "Methods": "methods",
+    "Options of a run": "options",
+    "Figures": "plotting",
+    "For extras: messages, checks, files": "messages",
+    "For extras: case files": "case_files",
+    "This build": "build",
 }
 """The last are for those who build on pendcore."""
 
@@ -70,8 +59,9 @@ def write(folder: Path) -> None:
         raise ValueError(f"GROUPS and pendcore.__all__ differ in {differing}")
     sections = [(title, "pendcore", names) for title, names in GROUPS.items()]
     for title, module in MODULES.items():
-        own = [name for name in callables(module) if name not in listed]
-        sections.append((title, module.__name__, own))
+        offered = callables(import_module(f"pendcore.{module}"))
+        own = [name for name in offered if name not in listed]
+        sections.append((title, f"pendcore.{module}", own))
     lines = ["Python", "======", "", "Everything public, from the docstrings.", ""]
     options = ["   :toctree: .", "   :template: page", "   :nosignatures:"]
     for title, module, names in sections:

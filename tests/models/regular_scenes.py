@@ -42,7 +42,8 @@ class Regular:
 
     def error_of(self, solution: pc.Solution) -> float:
         """Measure against a method that is not the solution's."""
-        return self.distance(solution, "dop853" if solution.method == "taylor" else "taylor")
+        other = "dop853" if solution.method.startswith("taylor") else "taylor"
+        return self.distance(solution, other)
 
     def distance(self, solution: pc.Solution, method: str) -> float:
         return float(solution.scene.distances(solution.q, self.known[method]).max())

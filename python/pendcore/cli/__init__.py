@@ -1,4 +1,7 @@
-"""The command `pendcore`; a file for each sub-command adds its arguments, and runs it."""
+"""The command `pendcore`; a file for each sub-command adds its arguments, and `execute` runs it.
+
+What `execute` returns is the exit status.
+"""
 
 from __future__ import annotations
 

@@ -19,12 +19,10 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     parser.add_argument("shell", choices=SHELLS, help="whose script")
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     try:
         import argcomplete
     except ImportError:

@@ -31,7 +31,6 @@ FILES = ("cost.txt", "cost.json", "cost.png")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     arguments.add_case(parser)
     arguments.add_out(parser)
     told = "error to recommend a method for: largest position error / total length"
@@ -45,7 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         at_least("--repeats", args.repeats, 1)
         positive("--error", args.error, "of the total length")

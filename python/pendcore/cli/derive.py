@@ -36,7 +36,6 @@ FORMS = ("text", "latex", "octave", "inline", "python", "cpp", "report")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     add_case(parser)
     parser.add_argument("--to", choices=FORMS, default="text", help="default: %(default)s")
     told = "the file to write, default: print the text; for a report the folder, default: out/ and "
@@ -45,7 +44,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     if args.worksheet and args.to != "report":
         raise UsageError("--worksheet: belongs to a report: add --to report")
     with blamed_on_usage():

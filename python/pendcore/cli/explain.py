@@ -24,13 +24,11 @@ example:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     add_case(parser)
     add_flags(parser, json="print the same as JSON")
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = case_of(args)
     for message in case.scene.run_warnings(case.q0, case.t_span):

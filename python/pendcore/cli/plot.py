@@ -28,7 +28,6 @@ DRAWN = [kind for kind in KINDS if kind != "section"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     parser.add_argument("solution", type=Path, metavar="RUN.npz", help="written by `pendcore run`")
     told = "figure to write, its kind from the suffix (png, pdf, svg); default: RUN.png"
     add_out(parser, "FILE", told)
@@ -41,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     out = args.out or args.solution
     if args.out is None or not out.suffix:
         out = out.with_suffix(".png")

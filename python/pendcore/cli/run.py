@@ -66,7 +66,6 @@ _ROWS_AT_ONCE = 10_000
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     arguments.add_case(parser)
     arguments.add_out(parser)
     told = "largest position error / total length to keep: method and tolerances are chosen, in "
@@ -95,7 +94,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case = arguments.case_of(args)
         case = _with_parameters(case, args.parameters) if args.parameters else case

@@ -30,7 +30,6 @@ ffmpeg writes MP4; where it is missing, a GIF is written instead.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     arguments.add_case_or_solution(parser)
     told = "its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html"
     arguments.add_out(parser, "FILE", told)
@@ -48,7 +47,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     args.out = args.out or Path("out", f"{args.case.stem if args.case else 'textbook'}.html")
     if args.out.suffix.lower() not in (".html", ".mp4", ".gif", ".png"):
         raise UsageError(f"-o {args.out}: must end with .html, .mp4, .gif or .png")

@@ -29,7 +29,6 @@ example:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     add_case_or_solution(parser)
     told = "error of an angle, rad, up to which a run counts as right"
     add_number(parser, "--limit", "RAD", told, LIMIT)
@@ -38,7 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         positive("--limit", args.limit, "rad")
         if args.time_limit is not None:

@@ -72,7 +72,6 @@ class Pixels:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the sub-command."""
     parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
     add_out(parser)
     add_number(parser, "--count", "N", "pixels along both axes", kind=int)
@@ -85,7 +84,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Run the sub-command; return its exit status."""
     with blamed_on_usage():
         case, table = read_case(args.case), read_map_table(args.case)
         table = _asked_for(table, args)
