@@ -161,13 +161,12 @@ def find_equilibria(
     found: list[Equilibrium] = []
     for name, pose in poses.items():
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
-        balanced = free.balanced_near(pose[free.leaders])
-        slopes = None if balanced is None else free.linearised(balanced)[1:]
+        z = free.balanced_near(pose[free.leaders])
         # Damping can be so large that the modes of an equilibrium are not finite.
-        if balanced is None or slopes is None or not np.isfinite(slopes).all():
+        if z is None or not np.isfinite(slopes := free.linearised(z)[1:]).all():
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
-        q = free.q(balanced)
+        q = free.q(z)
         if any(np.abs(np.sin((q - other.q) / 2)).max() < 1e-6 for other in found):
             continue
         moved = np.abs(np.sin((q - pose) / 2)).max() > 1e-6

@@ -22,7 +22,7 @@ _MOST_PANELS = 3
 """More links than these share one panel, which shows the last of them."""
 
 
-Panels: TypeAlias = "list[tuple[int, Callable[[list[Axes]], object]]]"
+Panels: TypeAlias = list[tuple[int, Callable[[list[Axes]], object]]]
 """On how many axes each kind of curves is, and what draws it there."""
 
 

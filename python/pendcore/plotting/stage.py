@@ -136,22 +136,19 @@ class Stage:
             self._clock = first.text(0.03, 0.97, "", fontsize=CLOCK, **how)
             told = _told(asked, choices.speed, panels)
             first.text(0.03, 0.87, told, color=theme_of(first).quiet, **how)
-        for artist in self.moving():
+        self._moving: list[Artist] = [one for chain in self._chains for one in chain.artists]
+        self._moving += [self._clock, *self._curves.artists]
+        for artist in self._moving:
             artist.set_animated(True)
 
-    def moving(self) -> list[Artist]:
-        """Return what has to be drawn anew in each frame, the lowest first."""
-        moving = [artist for chain in self._chains for artist in chain.artists]
-        return [*moving, self._clock, *self._curves.artists]
-
     def show(self, k: int) -> list[Artist]:
-        """Move everything to where it is in frame k, and return it."""
+        """Move everything to where it is in frame k, and return it, the lowest first."""
         taken: list[tuple[Floats, Floats]] = []
         for chain in self._chains:
             chain.show(k, taken)
         self._curves.show(k)
         self._clock.set_text(f"t = {self.times[k]:.2f} s")
-        return self.moving()
+        return self._moving
 
 
 class _Chain:

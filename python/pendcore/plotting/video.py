@@ -64,7 +64,6 @@ def to_video(
     dpi = min(height, 9 / 16 * width) / HEIGHT
     new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
     stage = Stage(solutions, new_figure, choices, names)
-    canvas = FigureCanvasAgg(stage.figure)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
         raise ValueError(
@@ -73,11 +72,11 @@ def to_video(
         )
     drawing = reporting(progress, "drawing", len(frames), "frames")
     with drawing as report, whole_file(target) as file:
-        pictures = _pictures(stage, canvas, frames, report)
+        pictures = _pictures(stage, frames, report)
         if kind == ".mp4":
             _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
         else:
-            samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
+            samples = _pictures(stage, frames[:: max(len(frames) // _SAMPLES, 1)])
             _write_gif(samples, pictures, file, choices.fps)
     return target
 
@@ -94,11 +93,11 @@ def _even_size(given: tuple[int, int]) -> tuple[int, int]:
 
 def _pictures(
     stage: Stage,
-    canvas: Any,
     frames: Sequence[int],
     report: Callable[[float], object] = lambda fraction: None,
 ) -> Iterator[Pixels]:
     """Yield the pixels of frames, (height, width, 4); they are overwritten by the next."""
+    canvas: Any = FigureCanvasAgg(stage.figure)
     canvas.draw()
     still = canvas.copy_from_bbox(stage.figure.bbox)
     count = len(frames)
