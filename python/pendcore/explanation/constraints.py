@@ -19,21 +19,15 @@ def locks(scene: Scene) -> dict[int, float | None]:
 
 def constraint_jacobian(scene: Scene, q: Floats) -> Floats:
     """Return the derivatives of the constraints by (x_1, y_1, q_1, x_2, ...), (rows, 3 n)."""
-    locked, n = locks(scene), len(scene.links)
-    rows = np.zeros((2 * n + len(locked), n, 3))
+    locked, n = [joint - 1 for joint in locks(scene)], len(scene.links)
+    hinges, locking = np.zeros((n + 1, 2, n, 3)), np.zeros((len(locked), n, 3))
     for i, link in enumerate(scene.links):
-        hinge = [(i, 1.0, -link.center)]
-        if i > 0:
-            before = scene.links[i - 1]
-            hinge.append((i - 1, -1.0, before.length - before.center))
-        for k, sign, distance in hinge:  # of the hinge from the mass centre of link k
-            around = sign * distance * np.array([-np.sin(q[k]), np.cos(q[k])])
-            rows[2 * i : 2 * i + 2, k] = np.column_stack([sign * np.eye(2), around])
-    for row, joint in zip(rows[2 * n :], locked, strict=True):
-        row[joint - 1, 2] = 1.0
-        if joint > 1:
-            row[joint - 2, 2] = -1.0
-    return rows.reshape(len(rows), 3 * n)
+        around = np.array([[-np.sin(q[i])], [np.cos(q[i])]])
+        hinges[i, :, i] = np.hstack([np.eye(2), -link.center * around])
+        hinges[i + 1, :, i] = -np.hstack([np.eye(2), (link.length - link.center) * around])
+    locking[:, :, 2] = (np.eye(n) - np.eye(n, k=-1))[locked]
+    both = hinges[:n].reshape(2 * n, 3 * n), locking.reshape(-1, 3 * n)  # nothing is at the tip
+    return np.concatenate(both)
 
 
 def constraint_rank(scene: Scene) -> int:

@@ -94,18 +94,15 @@ class FreeAngles:
         locked, n = locks(scene), len(scene.links)
         self.leaders = [i for i in range(n) if i + 1 not in locked]
         """The links that do not turn with the one before, or the ground."""
-        self._turning = np.zeros((n, len(self.leaders)))
-        """(n, m): which links turn with each of the free angles."""
-        self._fixed = np.zeros(n)
-        """The angle of each link against the first link that turns with it, or the ground, rad."""
-        for k, i in enumerate(self.leaders):
-            self._turning[i, k] = 1.0
+        turning, fixed = np.zeros((n + 1, len(self.leaders))), np.zeros(n + 1)  # the ground first
+        turning[1:][self.leaders] = np.eye(len(self.leaders))
         for joint, angle in sorted(locked.items()):
-            i = joint - 1
-            self._fixed[i] = np.diff(start, prepend=0.0)[i] if angle is None else angle
-            if i:
-                self._fixed[i] += self._fixed[i - 1]
-                self._turning[i] = self._turning[i - 1]
+            turn = np.diff(start, prepend=0.0)[joint - 1] if angle is None else angle
+            turning[joint], fixed[joint] = turning[joint - 1], fixed[joint - 1] + turn
+        self._turning = turning[1:]
+        """(n, m): which links turn with each of the free angles."""
+        self._fixed = fixed[1:]
+        """The angle of each link against the first link that turns with it, or the ground, rad."""
 
     def q(self, z: Floats) -> Floats:
         """Angles of all links, (n,), from the free ones, (m,)."""
@@ -114,9 +111,9 @@ class FreeAngles:
     def linearised(self, z: Floats) -> tuple[Floats, Floats, Floats]:
         """Accelerations at rest, (m,), and their derivatives by angles and by rates, (m, m)."""
         at_rest = self._t, self.q(z), np.zeros(len(self._fixed))
-        by_q, by_qd = (one @ self._turning for one in self._scene.jacobian(*at_rest))
-        found = self._scene.accelerations(*at_rest), by_q, by_qd
-        residual, slope, by_rate = (one[self.leaders] for one in found)
+        residual = self._scene.accelerations(*at_rest)[self.leaders]
+        both = (one @ self._turning for one in self._scene.jacobian(*at_rest))
+        slope, by_rate = (one[self.leaders] for one in both)
         return residual, slope, by_rate
 
     def balanced_near(self, z: Floats) -> Floats | None:
@@ -164,13 +161,12 @@ def find_equilibria(
     found: list[Equilibrium] = []
     for name, pose in poses.items():
         free = FreeAngles(scene, t, pose if start is None else np.array(start))
-        balanced = free.balanced_near(pose[free.leaders])
-        slopes = None if balanced is None else free.linearised(balanced)[1:]
+        z = free.balanced_near(pose[free.leaders])
         # Damping can be so large that the modes of an equilibrium are not finite.
-        if balanced is None or slopes is None or not np.isfinite(slopes).all():
+        if z is None or not np.isfinite(slopes := free.linearised(z)[1:]).all():
             remarks.append(f"no equilibrium was found from {name} at t = {t:.6g} s")
             continue
-        q = free.q(balanced)
+        q = free.q(z)
         if any(np.abs(np.sin((q - other.q) / 2)).max() < 1e-6 for other in found):
             continue
         moved = np.abs(np.sin((q - pose) / 2)).max() > 1e-6
@@ -200,9 +196,8 @@ def _rates_about(by_angle: Floats, by_rate: Floats) -> tuple[Complexes, bool]:
     if m and sizes[-1] <= _SINGULAR * sizes[0]:
         rates[np.abs(rates) <= _NOISE * np.abs(rates[-1])] = 0.0
         return rates, False
-    with np.errstate(over="ignore", invalid="ignore"):
-        inverse = np.linalg.inv(by_angle)
-        of_inverse = np.block([[-inverse @ by_rate, inverse], [unit, zero]])
+    inverse = np.linalg.inv(by_angle)
+    of_inverse = np.block([[-inverse @ by_rate, inverse], [unit, zero]])
     if not np.isfinite(of_inverse).all():
         return rates, True
     slow = np.linalg.eigvals(of_inverse)

@@ -82,14 +82,12 @@ def explain(
 def absent(scene: Scene) -> list[Absence]:
     """Return what a scene does not simulate."""
     present = {effect.kind for effect in scene.effects}
-    return [
-        *(
-            Absence(kind, cls.description.sentence, available=True)
-            for kind, cls in effects.kinds().items()
-            if kind not in present and not cls.description.is_function
-        ),
-        *NOT_MODELLED,
+    could_have = [
+        Absence(kind, cls.description.sentence, available=True)
+        for kind, cls in effects.kinds().items()
+        if kind not in present and not cls.description.is_function
     ]
+    return [*could_have, *NOT_MODELLED]
 
 
 def _outside_of_tables(scene: Scene, t: float) -> str:

@@ -138,27 +138,22 @@ class Explanation:
         )
 
     def __repr__(self) -> str:
-        return _text(self)
-
-
-def _text(told: Explanation) -> str:
-    """Return an explanation as a table."""
-    n, at = len(told.scene.links), f"t = {told.t:.6g} s"
-    is_frozen = told.equilibria and may_change_with_time(told.scene)
-    frozen = f", with all drives held as they are at {at}" if is_frozen else ""
-    head = f"{n} link{'s'[: n > 1]}, gravity {told.scene.gravity:.6g} m/s^2, explained at {at}"
-    blocks = [
-        [head],
-        ["What is simulated, and what it costs in a right-hand side", *_costs(told)],
-        ["What is not simulated", *_absences(told)],
-        ["Freedom", *_freedom(told)],
-        [f"Equilibria{frozen}", *_equilibria(told)],
-        ["How fast", *_rates(told)],
-        ["Many at once", *_bullet(_of_lanes(told.lanes))],
-    ]
-    if told.remarks:
-        blocks.append(["Remarks", *(line for remark in told.remarks for line in _bullet(remark))])
-    return "\n\n".join("\n".join(block) for block in blocks)
+        n, at = len(self.scene.links), f"t = {self.t:.6g} s"
+        is_frozen = self.equilibria and may_change_with_time(self.scene)
+        frozen = f", with all drives held as they are at {at}" if is_frozen else ""
+        head = f"{n} link{'s'[: n > 1]}, gravity {self.scene.gravity:.6g} m/s^2, explained at {at}"
+        blocks = [
+            [head],
+            ["What is simulated, and what it costs in a right-hand side", *_costs(self)],
+            ["What is not simulated", *_absences(self)],
+            ["Freedom", *_freedom(self)],
+            [f"Equilibria{frozen}", *_equilibria(self)],
+            ["How fast", *_rates(self)],
+            ["Many at once", *_lanes(self)],
+        ]
+        if self.remarks:
+            blocks.append(["Remarks", *(line for told in self.remarks for line in _bullet(told))])
+        return "\n\n".join("\n".join(block) for block in blocks)
 
 
 def may_change_with_time(scene: Scene) -> bool:
@@ -194,11 +189,10 @@ def _equilibria(told: Explanation) -> Iterator[str]:
     for found in told.equilibria:
         angles = ", ".join(f"{x:.6g}" for x in found.q[:4]) + ", ..." * (len(found.q) > 4)
         yield f"  {found.name}, {found.stability}: q = ({angles}) rad"
-        shown = found.modes if len(found.modes) <= 8 else (*found.modes[:4], *found.modes[-4:])
-        for i, mode in enumerate(shown):
-            if i == 4 and len(found.modes) > 8:
-                yield f"    ... {len(found.modes) - 8} more"
-            yield f"    {_motion(mode)}"
+        motions = [_motion(mode) for mode in found.modes]
+        if len(motions) > 8:
+            motions[4:-4] = [f"... {len(motions) - 8} more"]
+        yield from (f"    {motion}" for motion in motions)
     if not told.equilibria:
         yield "  none was found"
 
@@ -233,13 +227,13 @@ def _absences(told: Explanation) -> Iterator[str]:
     yield from _bullet(f"never: {'; '.join(x[0].lower() + x[1:] for x in never)}")
 
 
-def _of_lanes(methods: tuple[str, ...]) -> str:
-    if not methods:
-        return "an ensemble runs its members one by one in each thread"
-    return (
-        f"an ensemble runs several members at once, a lane each, by {in_a_row(methods, 'or')}; "
-        "one by one with "
-        "events of your own, for the largest exponent, and for the drift of energy with losses"
+def _lanes(told: Explanation) -> list[str]:
+    if not told.lanes:
+        return _bullet("an ensemble runs its members one by one in each thread")
+    return _bullet(
+        f"an ensemble runs several members at once, a lane each, by {in_a_row(told.lanes, 'or')}; "
+        "one by one with events of your own, for the largest exponent, and for the drift of energy "
+        "with losses"
     )
 
 

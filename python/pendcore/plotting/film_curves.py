@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 
 from pendcore import Solution
 from pendcore.messages import Floats
@@ -14,17 +16,13 @@ from pendcore.plotting.curve import curve_of
 from pendcore.plotting.over_time import draw_angles, draw_curves, draw_energy, force_name
 from pendcore.plotting.style import theme_of
 
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-
 TYPICAL = 95
 """The percentile of forces from which on arrows grow no longer, and curves may leave their axes."""
 _MOST_PANELS = 3
 """More links than these share one panel, which shows the last of them."""
 
 
-Panels: TypeAlias = "list[tuple[int, Callable[[list[Axes]], object]]]"
+Panels: TypeAlias = list[tuple[int, Callable[[list[Axes]], object]]]
 """On how many axes each kind of curves is, and what draws it there."""
 
 

@@ -79,6 +79,6 @@ def _candidates(anchors: Floats, towards: Floats, half: Floats) -> tuple[Floats,
     sides = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     reach = 1.0 / np.maximum(np.abs(sides) / half, 1e-9).max(axis=1)  # to the border of the box
     found = anchors[:, None, None] + sides[:, None] * (reach[:, None] + GAPS)[..., None]
-    worth = (np.any(towards) * 2.0 * (np.cos(turns) - 1.0))[:, None] - 0.5 * GAPS
+    worth = (2.0 * (np.cos(turns) - 1.0))[:, None] - 0.5 * GAPS
     worth = worth - 1.5 * np.arange(len(anchors))[:, None, None]
     return found.reshape(-1, 2), worth.reshape(-1)

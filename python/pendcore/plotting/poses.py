@@ -202,13 +202,10 @@ def _drags(scene: Scene, t: float, q: Floats, qd: Floats) -> Floats:
         dragless = scene.replace(effects=others)
     turning = scene.accelerations(t, q, qd) - dragless.accelerations(t, q, qd)
     reactions = scene.reactions(t, q, qd) - dragless.reactions(t, q, qd)
-    turned = turning[:, np.newaxis] * np.stack([-np.sin(q), np.cos(q)], axis=-1)
-    lengths, centers, masses = (
-        np.array([getattr(link, name) for link in scene.links])[:, np.newaxis]
-        for name in ("length", "center", "mass")
-    )
-    ends = np.cumsum(lengths * turned, axis=0)
-    needed: Floats = masses * (ends + (centers - lengths) * turned)
+    ends = scene.velocities(t, q, turning) - scene.velocities(t, q, 0 * q)  # without the pivot's
+    needed = np.zeros((n, 2))
+    for i, link in enumerate(scene.links):  # a mass centre moves as its share of both ends
+        needed[i] = link.mass * (ends[i] + link.center / link.length * (ends[i + 1] - ends[i]))
     needed[-1] += _payload(scene) * ends[-1]
     return needed - reactions + np.vstack([reactions[1:], np.zeros(2)])
 

@@ -1,7 +1,6 @@
 """What a drawing of a mechanism is made of: rods, joints, ground, mass centres, arrows, angles.
 
-Places are (x, y), m, x right and y down, as everywhere; `size` is the length by which the symbols
-are scaled, m. Names are placed last, where they are clear of all that is drawn.
+Places are (x, y), m, x right and y down. Names are placed last, clear of all that is drawn.
 """
 
 from __future__ import annotations
@@ -90,12 +89,10 @@ def clear_direction(taken: Iterable[float], prefer: float = np.pi) -> Floats:
     return direction(float(candidates[np.argmax(np.minimum(np.min(away, axis=0), 2.0))]))
 
 
-def name(
-    on: Sketch, at: Floats | Sequence[Floats], text: str, towards: Floats | None = None, **how: Any
-) -> None:
+def name(on: Sketch, at: Floats | Sequence[Floats], text: str, towards: Floats, **how: Any) -> None:
     """Name a place, or the clearest of several; `finish` finds where the name goes beside it."""
     places = np.atleast_2d(np.asarray(at, dtype=float))
-    on.labels.append(Label(text, places, np.zeros(2) if towards is None else towards, how))
+    on.labels.append(Label(text, places, towards, how))
 
 
 def number(on: Sketch, at: Floats | Sequence[Floats], link: int, towards: Floats) -> None:

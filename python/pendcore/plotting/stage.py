@@ -6,9 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.animation import FuncAnimation
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from pendcore import Solution
 from pendcore.messages import Floats, number, positive, text
@@ -19,12 +25,6 @@ from pendcore.plotting.frames import Moves, frame_times, moves_of
 from pendcore.plotting.poses import arrows_of, draw_scale, total_length
 from pendcore.plotting.sketch import direction
 from pendcore.plotting.style import applied, in_legend, keep_style, theme_of
-
-if TYPE_CHECKING:
-    from matplotlib.animation import FuncAnimation
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 HEIGHT = 4.5
 """inches, of a film in 16:9, whatever its pixels: letters take the same share of every film."""
@@ -66,8 +66,6 @@ def animate(
     solutions: Sequence[Solution], names: Sequence[str | None] | None, choices: Choices
 ) -> FuncAnimation:
     """Return matplotlib's animation; it must be kept as long as it is to move."""
-    from matplotlib.animation import FuncAnimation
-
     new_figure = partial(figure_of_pyplot, figsize=(HEIGHT * 16 / 9, HEIGHT))
     stage = Stage(solutions, new_figure, choices, names)
     frames, interval = len(stage.times), 1000.0 / choices.fps
@@ -133,25 +131,24 @@ class Stage:
                 theme = theme_of(axis)
                 colors = [theme.link(i) if len(runs) == 1 else theme.run(k) for i in links]
                 self._chains.append(_Chain(axis, one, colors, choices.trace, self.times))
-            self._clock = _note(scenes[0], 0.97, fontsize=CLOCK)
+            first = scenes[0]
+            how: dict[str, Any] = {"transform": first.transAxes, "va": "top"}
+            self._clock = first.text(0.03, 0.97, "", fontsize=CLOCK, **how)
             told = _told(asked, choices.speed, panels)
-            _note(scenes[0], 0.87, told, color=theme_of(scenes[0]).quiet)
-        for artist in self.moving():
+            first.text(0.03, 0.87, told, color=theme_of(first).quiet, **how)
+        self._moving: list[Artist] = [one for chain in self._chains for one in chain.artists]
+        self._moving += [self._clock, *self._curves.artists]
+        for artist in self._moving:
             artist.set_animated(True)
 
-    def moving(self) -> list[Artist]:
-        """Return what has to be drawn anew in each frame, the lowest first."""
-        moving = [artist for chain in self._chains for artist in chain.artists]
-        return [*moving, self._clock, *self._curves.artists]
-
     def show(self, k: int) -> list[Artist]:
-        """Move everything to where it is in frame k, and return it."""
+        """Move everything to where it is in frame k, and return it, the lowest first."""
         taken: list[tuple[Floats, Floats]] = []
         for chain in self._chains:
             chain.show(k, taken)
         self._curves.show(k)
         self._clock.set_text(f"t = {self.times[k]:.2f} s")
-        return self.moving()
+        return self._moving
 
 
 class _Chain:
@@ -160,8 +157,6 @@ class _Chain:
     def __init__(
         self, axis: Axes, run: _Run, colors: Sequence[str], trace: float | None, times: Floats
     ) -> None:
-        from matplotlib.collections import LineCollection
-
         self._axis, self._run, self._colors, self._theme = axis, run, colors, theme_of(axis)
         sense = np.sign(times[-1] - times[0])
         asked = run.asked
@@ -194,8 +189,6 @@ class _Chain:
 
     def _text(self, text: str, color: str) -> Any:
         """Return a text that can be read in front of anything."""
-        from matplotlib.patheffects import withStroke
-
         halo = withStroke(linewidth=4.0, foreground=self._theme.ground)
         how: dict[str, Any] = {"path_effects": [halo], "ha": "center", "va": "center", "zorder": 6}
         return self._axis.text(0.0, 0.0, text, color=color, **how)
@@ -296,11 +289,6 @@ def _frame_scene(axis: Axes, runs: Sequence[_Run], reach: float) -> None:
     axis.plot(*pivots.T, "^", linestyle="", **how)
     draw_scale(axis, np.array([low[0] - 0.7 * margin, high[1] + 0.7 * margin]), reach)
     axis.apply_aspect()
-
-
-def _note(axis: Axes, height: float, text: str = "", **how: Any) -> Any:
-    """Write a text at a height of the stage, a share of its own."""
-    return axis.text(0.03, height, text, transform=axis.transAxes, va="top", **how)
 
 
 def _told(asked: Sequence[Request], speed: float, panels: Sequence[Axes]) -> str:

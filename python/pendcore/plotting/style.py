@@ -6,8 +6,8 @@ docs shows it; tests hold the colours to what is said of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
@@ -122,8 +122,7 @@ def sheet(theme: Theme = LIGHT) -> dict[str, Any]:
     }
 
 
-@contextmanager
-def applied(others: Mapping[str, Any] | None = None) -> Iterator[None]:
+def applied(others: Mapping[str, Any] | None = None) -> AbstractContextManager[None]:
     """Make figures in the house's style, with some settings changed.
 
     What the user has set in matplotlib otherwise stays; where that is a dark ground, so is ours.
@@ -137,8 +136,7 @@ def applied(others: Mapping[str, Any] | None = None) -> Iterator[None]:
     house = sheet(DARK if is_dark else LIGHT)
     asked: Any = {**house, **(others or {})}
     ours = {name for name in asked if set_now[name] in (usual[name], house.get(name))}
-    with mpl.rc_context({name: asked[name] for name in ours}):
-        yield
+    return mpl.rc_context({name: asked[name] for name in ours})
 
 
 def keep_style(axes: Axes) -> None:
@@ -171,22 +169,19 @@ BY_SYSTEM = "@media (prefers-color-scheme: dark)"
 
 def css_variables(when_dark: str = BY_SYSTEM) -> str:
     """Return the style as variables of CSS, dark where a selector says so; "" is always light."""
-    sizes = [f"  --size-{name}: {size}rem;" for name, size in SIZES.items()]
-    told = _rule(":root", [*sizes, *_variables(LIGHT)])
+    told = _rule(":root", LIGHT, {f"size-{name}": f"{size}rem" for name, size in SIZES.items()})
     if when_dark == BY_SYSTEM:
-        return f"{told}{BY_SYSTEM} {{\n{_rule(':root', _variables(DARK))}}}\n"
-    return told + _rule(when_dark, _variables(DARK)) if when_dark else told
+        return f"{told}{BY_SYSTEM} {{\n{_rule(':root', DARK)}}}\n"
+    return told + _rule(when_dark, DARK) if when_dark else told
 
 
-def _rule(selector: str, lines: list[str]) -> str:
-    return "\n".join([f"{selector} {{", *lines, "}", ""])
-
-
-def _variables(theme: Theme) -> list[str]:
+def _rule(selector: str, theme: Theme, others: Mapping[str, str] | None = None) -> str:
+    """Return a rule of CSS that sets the variables of a theme, and before them others."""
     links = {f"link-{k}": color for k, color in enumerate(theme.links, 1)}
     parts = {f"part-{k}": color for k, color in enumerate(theme.parts, 1)}
-    named = vars(theme) | links | parts | {"force": theme.force}
-    return [f"  --{name}: {color};" for name, color in named.items()]
+    named = {**(others or {}), **vars(theme), **links, **parts, "force": theme.force}
+    lines = [f"  --{name}: {value};" for name, value in named.items()]
+    return "\n".join([f"{selector} {{", *lines, "}", ""])
 
 
 def as_drawn(text: str) -> str:

@@ -12,17 +12,17 @@ import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
 
 from pendcore import Solution
 from pendcore.messages import Progress, reporting, warn, whole_file
 from pendcore.plotting.stage import HEIGHT, Choices, Stage
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -44,9 +44,6 @@ def to_video(
     progress: Progress = None,
 ) -> Path:
     """Write a film and return where it is: where ffmpeg is missing, a GIF in place of an MP4."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     target = Path(path)
     kind = target.suffix.lower()
     if kind not in SIZES:
@@ -67,7 +64,6 @@ def to_video(
     dpi = min(height, 9 / 16 * width) / HEIGHT
     new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
     stage = Stage(solutions, new_figure, choices, names)
-    canvas = FigureCanvasAgg(stage.figure)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
         raise ValueError(
@@ -76,11 +72,11 @@ def to_video(
         )
     drawing = reporting(progress, "drawing", len(frames), "frames")
     with drawing as report, whole_file(target) as file:
-        pictures = _pictures(stage, canvas, frames, report)
+        pictures = _pictures(stage, frames, report)
         if kind == ".mp4":
             _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
         else:
-            samples = _pictures(stage, canvas, frames[:: max(len(frames) // _SAMPLES, 1)])
+            samples = _pictures(stage, frames[:: max(len(frames) // _SAMPLES, 1)])
             _write_gif(samples, pictures, file, choices.fps)
     return target
 
@@ -97,11 +93,11 @@ def _even_size(given: tuple[int, int]) -> tuple[int, int]:
 
 def _pictures(
     stage: Stage,
-    canvas: Any,
     frames: Sequence[int],
     report: Callable[[float], object] = lambda fraction: None,
 ) -> Iterator[Pixels]:
     """Yield the pixels of frames, (height, width, 4); they are overwritten by the next."""
+    canvas: Any = FigureCanvasAgg(stage.figure)
     canvas.draw()
     still = canvas.copy_from_bbox(stage.figure.bbox)
     count = len(frames)
@@ -154,11 +150,9 @@ def _write_gif(
     samples: Iterator[Pixels], pictures: Iterator[Pixels], file: Path, fps: float
 ) -> None:
     """Write a GIF. All frames share the colours of some samples, so that what rests stays equal."""
-    from PIL.Image import Dither, fromarray
-
     palette = _palette(samples)
     first, *rest = (
-        fromarray(picture[..., :3].copy()).quantize(palette=palette, dither=Dither.NONE)
+        Image.fromarray(picture[..., :3].copy()).quantize(palette=palette, dither=Image.Dither.NONE)
         for picture in pictures
     )
     ticks = np.round(np.arange(len(rest) + 2) * 1000 / fps / _GIF_TICK)
@@ -169,15 +163,14 @@ def _write_gif(
     )  # fmt: skip
 
 
-def _palette(samples: Iterator[Pixels]) -> Image:
+def _palette(samples: Iterator[Pixels]) -> Image.Image:
     """Return an image whose palette has white, and the colours of the samples, 64 in all."""
-    from PIL.Image import Dither, Quantize, fromarray, new
-
     # As one number of 24 bits, each colour is found once in no time: the thin traces count, too.
     seen = [np.unique(picture[..., :3] @ [1 << 16, 1 << 8, 1]) for picture in samples]
     numbers = np.unique(np.concatenate(seen)).astype(">u4")
     colors = np.ascontiguousarray(numbers.view(np.uint8).reshape(1, -1, 4)[..., 1:])
-    few = fromarray(colors).quantize(63, Quantize.MEDIANCUT, dither=Dither.NONE)
-    palette = new("P", (1, 1))
+    median_cut, exact = Image.Quantize.MEDIANCUT, Image.Dither.NONE
+    few = Image.fromarray(colors).quantize(63, median_cut, dither=exact)
+    palette = Image.new("P", (1, 1))
     palette.putpalette([255, 255, 255, *(few.getpalette() or [])[: 3 * 63]])
     return palette
