@@ -26,8 +26,8 @@ import pendcore as pc
 from page_part import rewrite
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.target_error import search
-from pendcore._accuracy.trials import Strategy, TrialRun, Trials
-from pendcore._run.call import Choice, Start, run, start_of
+from pendcore._accuracy.trials import TrialRun, Trials
+from pendcore._run.call import Choice, Start, run
 from pendcore.options import OPTIONS, atol_beside
 
 ROOT = Path(__file__).parents[2]
@@ -37,10 +37,12 @@ from regular_scenes import Regular, regular  # noqa: E402
 SCENES = range(1000, 1200)
 """Seeds other than those that served to choose the numbers in `accuracy/method_choice.py`."""
 ROUNDS = 30
+OF_PYTHON = ("error", "sensitivities", "on_failure", "progress")
+"""The options that the core does not know."""
 OPTIONS_OF_TRIALS = {
     name: option.default
     for name, option in OPTIONS.items()
-    if not (option.chosen_for_error or name in ("on_failure", "error", "progress"))
+    if not (option.chosen_for_error or name in OF_PYTHON)
 }
 Timed: TypeAlias = Callable[..., object]
 Key = TypeVar("Key", bound=Hashable)
@@ -79,7 +81,7 @@ def outcome(one: Regular) -> dict[str, Any]:
 
 def times(one: Regular) -> dict[str, float]:
     """Time the best run of the sweep, the run that was chosen, the same verified, and the call."""
-    scene, q0, qd0, span = one.arguments
+    scene, span, q0, qd0 = one.arguments
     start = Start(scene, q0, qd0, *span)
     options = OPTIONS_OF_TRIALS | {"t_eval": one.times}
     runs = Trials(start, one.error, options, None, strategies(start, one.error))
@@ -91,12 +93,13 @@ def times(one: Regular) -> dict[str, float]:
         for method, rtol in loosest_of_each(one)
     }
     best = [*timed]
-    timed["run"] = again(chosen)
+    timed["run"] = again(start, chosen)
     if runs.strategy.verify(runs, chosen) is solution.known_error and runs.strategy.method:
         verified = ["verified"]
-        timed["verified"] = with_correction(again(chosen), start, runs.strategy, chosen.scale)
+        correction = partial(runs.strategy.correction, start, chosen.scale)
+        timed["verified"] = with_watch(again(start, chosen), correction)
     else:
-        seconds = {f"second {i}": again(made) for i, made in enumerate(runs.seconds)}
+        seconds = {f"second {i}": again(start, made) for i, made in enumerate(runs.seconds)}
         timed |= seconds
         verified = ["run", *seconds]
     timed["all"] = partial(one.run, error=one.error)
@@ -119,17 +122,16 @@ def loosest_of_each(one: Regular) -> list[tuple[str, float]]:
     return [*loosest.items()]
 
 
-def again(made: TrialRun) -> Timed:
+def again(start: Start, made: TrialRun) -> Timed:
     """Return what makes a run of the search once more."""
     asked = made.solution._run.arguments
     choice = Choice(made.method, made.rtol, atol_beside(made.rtol), asked["compensated"])
-    return partial(
-        run, start_of(made.solution), choice, asked["t_eval"], max_step=asked["max_step"]
-    )
+    return partial(run, start, choice, asked["t_eval"], max_step=asked["max_step"])
 
 
-def with_correction(made: Timed, start: Start, strategy: Strategy, scale: float) -> Timed:
-    return lambda: made(correction=strategy.correction(start, scale))
+def with_watch(made: Timed, watch: Callable[[], object]) -> Timed:
+    """Return what makes a run once more, and a new watch that looks on."""
+    return lambda: made(watch=watch())
 
 
 def least_times(timed: dict[Key, Timed], rounds: int) -> dict[Key, float]:

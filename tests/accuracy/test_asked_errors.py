@@ -55,6 +55,16 @@ def test_on_200_scenes_no_error_exceeds_the_asked_or_the_told_one(outcomes):
 
 
 @pytest.mark.unsanitized
+@pytest.mark.parametrize("seed", [1000, 1001])  # the error at times, and second runs
+def test_every_row_of_the_page_has_a_number(seed, monkeypatch):
+    monkeypatch.setattr(asked_errors, "ROUNDS", 1)
+    one = regular(seed)
+    found = asked_errors.outcome(one) | asked_errors.times(one)
+    for _, key, _ in asked_errors.ROWS:
+        assert np.isfinite(found[key])
+
+
+@pytest.mark.unsanitized
 def test_the_run_takes_hardly_more_work_than_the_best_of_a_sweep(outcomes):
     verified = np.array([one["verified"] for one in outcomes])
     assert np.mean(verified <= 3.5) >= 0.88
