@@ -29,7 +29,7 @@ TITLE = 18.0
 """Height of the line above a body, points of print."""
 
 
-@lettering()
+@lettering
 def mechanism(page: Page, q: Sequence[float]) -> Drawing:
     """Draw the chain at given angles, rad, as in the textbook's Fig. 1, with the page's names."""
     scene = page.derivation.scene
@@ -101,7 +101,7 @@ def _acting(on: Sketch, effects: Sequence[Any], places: Floats, last: float) -> 
             name(on, beside, r"$\mathbf{r}_A(t)$", side)
 
 
-@lettering()
+@lettering
 def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Drawing:
     """Draw each link at its angle, rad, with what acts on it, or alone for those who are to draw.
 
