@@ -67,8 +67,7 @@ class Chain:
         self.notation = s = notation
         self.path: dict[Symbol, Expr] = {}
         self._rates: dict[Symbol, Expr] = {s.t: Integer(1)}
-        for rows in ((s.q, s.qd), (s.qd, s.qdd)):
-            self._rates |= dict(zip(*rows, strict=True))
+        self._rates |= zip((*s.q, *s.qd), (*s.qd, *s.qdd), strict=True)
         pivot: Vector = self._along("x", path[0]), self._along("y", path[1])
         self.pivot_is_fixed = pivot == (0, 0)
         self.joints, self.centers = [pivot], list[Vector]()

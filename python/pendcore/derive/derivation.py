@@ -99,16 +99,13 @@ class Derivation(Motion):
     @cached_property
     def energies_by_definitions(self) -> Vector:
         """T, of links, payload and rotors, and V, J, with the pivot's motion as symbols."""
-        s, chain, payload = self.symbols, self.chain, self.equations.payload
-        moved = s.qd, chain.centers, chain.center_velocities
-        bodies = [*zip(s.masses, s.inertias, *moved, strict=True)]
-        if payload is not None:
-            tip = s.qd[-1], chain.joints[-1], chain.joint_velocities[-1]
-            bodies.append((payload.mass, payload.inertia, *tip))
+        s, chain = self.symbols, self.chain
+        moved = [*zip(s.qd, chain.centers, chain.center_velocities, strict=True)]
+        moved.append((s.qd[-1], chain.joints[-1], chain.joint_velocities[-1]))
         kinetic = potential = Integer(0)
-        for mass, inertia, rate, (_, y), velocity in bodies:
-            kinetic += mass * dot(velocity, velocity) / 2 + inertia * rate**2 / 2
-            potential -= s.gravity * mass * y
+        for body, (rate, (_, y), velocity) in zip(self.equations.bodies, moved, strict=False):
+            kinetic += body.mass * dot(velocity, velocity) / 2 + body.inertia * rate**2 / 2
+            potential -= s.gravity * body.mass * y
         for joint, armature in enumerate(self.equations.armatures, start=1):
             kinetic += armature * chain.joint(joint)[1] ** 2 / 2
         potential = expand(potential)

@@ -18,7 +18,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import sympy
-from sympy import Add, Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
+from sympy import Expr, ImmutableMatrix, Integer, Matrix, Symbol, expand
 
 from pendcore.derive.chain import of_differences
 from pendcore.derive.newton_euler import NewtonEuler
@@ -78,21 +78,19 @@ class Motion:
     def named(self) -> Named:
         """M and f with a symbol for each entry that is not 0."""
         entries: dict[Symbol, Expr] = {}
-        matrix, right = Matrix.zeros(self.n, self.n), Matrix.zeros(self.n, 1)
 
-        def keep(letter: str, index: str, value: Expr) -> Expr:
-            if value != 0:
-                name = self.symbols.symbol(f"{letter}{index}", f"{letter}_{{{index}}}")
-                entries[name], value = value, name
-            return value
+        def named(letter: str, value: Expr, *place: int) -> Expr:
+            if value == 0:
+                return value
+            index = "".join(str(k + 1) for k in sorted(place))  # M is symmetric
+            name = self.symbols.symbol(f"{letter}{index}", f"{letter}_{{{index}}}")
+            entries[name] = value
+            return name
 
-        for i in range(self.n):
-            for j in range(i, self.n):
-                value = keep("M", f"{i + 1}{j + 1}", self.mass_matrix[i, j])
-                matrix[i, j] = matrix[j, i] = value
-        for i, value in enumerate(self.forcing_by_definitions):
-            right[i] = keep("f", f"{i + 1}", value)
-        return Named(entries, matrix.as_immutable(), right.as_immutable())
+        mass, forcing, n = self.mass_matrix, self.forcing_by_definitions, self.n
+        matrix = ImmutableMatrix(n, n, lambda i, j: named("M", mass[i, j], i, j))
+        right = ImmutableMatrix(n, 1, lambda i, _: named("f", forcing[i], i))
+        return Named(entries, matrix, right)
 
     @cached_property
     def known(self) -> dict[Symbol, Expr]:
@@ -192,7 +190,7 @@ class Motion:
     @cached_property
     def _elimination(self) -> tuple[Assignments, tuple[Expr, ...]]:
         """M = L D L^T, L h = f, L^T a = D^-1 h; no pivoting, because M is positive definite."""
-        matrix, right = self._free
+        matrix, right = (entries.as_mutable() for entries in self._free)
         done = [(d.symbol, d.value) for d in self.equations.definitions]
         done += self.named.entries.items()
 
@@ -208,20 +206,17 @@ class Motion:
         pivots: list[Expr] = []
         reduced: list[Expr] = []
         for j in range(size):
-            before = range(j)
-            pivot = matrix[j, j] - Add(*(lower[j, k] ** 2 * pivots[k] for k in before))
-            pivots.append(keep("D", f"{j + 1}", pivot))
-            rest = right[j] - Add(*(lower[j, k] * reduced[k] for k in before))
-            reduced.append(keep("h", f"{j + 1}", rest))
+            pivots.append(keep("D", f"{j + 1}", matrix[j, j]))
+            reduced.append(keep("h", f"{j + 1}", right[j]))
             for i in range(j + 1, size):
-                rest = matrix[i, j] - Add(*(lower[i, k] * lower[j, k] * pivots[k] for k in before))
-                lower[i, j] = keep("l", f"{i + 1}{j + 1}", rest / pivots[j])
-        free = [Integer(0)] * size
+                lower[i, j] = keep("l", f"{i + 1}{j + 1}", matrix[i, j] / pivots[j])
+            matrix -= pivots[j] * lower[:, j] * lower[:, j].T
+            right -= reduced[j] * lower[:, j]
+        free = sympy.zeros(size, 1)
         for i in reversed(range(size)):
-            rest = Add(*(lower[k, i] * free[k] for k in range(i + 1, size)))
-            value = reduced[i] / pivots[i] - rest
+            value = reduced[i] / pivots[i] - lower[:, i].dot(free)
             free[i] = keep("a", f"{i + 1}", value) if i > 0 else value
-        solved = tuple(self.turning_together * ImmutableMatrix(size, 1, free))
+        solved = tuple(self.turning_together * free)
         return needed(done, solved), solved
 
 

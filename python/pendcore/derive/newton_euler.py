@@ -32,28 +32,26 @@ class Balance(NamedTuple):
     acting: Expr
 
 
-class LinkEquations(NamedTuple):
-    """The three equations of a link: Newton's along x and y, N, and Euler's, N m.
+class BodyEquations(NamedTuple):
+    """The three equations of a link or a payload: Newton's along x and y, N, and Euler's, N m.
 
-    Euler's is about the pivot A for link 1, if A is fixed; else about the mass centre.
-    """
-
-    newton: tuple[Balance, Balance]
-    moment: Balance
-    about_pivot: bool
-
-
-class PayloadEquations(NamedTuple):
-    """A body at the tip, all payloads together, kg and kg m^2, and its equations, N.
-
-    The force F_p3 and so on is the unknown force of the body on the last link. The opposite force
-    acts on the body.
+    Newton's give the unknown force of the ground on link 1, or of another body on the one before
+    it, such as F_21 or F_p3: the opposite force acts on the body itself. Euler's is about the pivot
+    A for link 1, if A is fixed; else about the mass centre.
     """
 
     mass: Expr
     inertia: Expr
+    acceleration: Vector
     force: tuple[Symbol, Symbol]
-    newton: tuple[Balance, Balance]
+    newton: tuple[Balance, ...]
+    moment: Balance
+    about_pivot: bool = False
+
+    def solved(self, axis: int, inertia: Expr) -> Expr:
+        """Return the unknown force along an axis, with the inertia written in any form, N."""
+        acting, symbol = self.newton[axis].acting, self.force[axis]
+        return acting.coeff(symbol) * (inertia - acting.subs(symbol, 0))  # the coefficient is +-1
 
 
 class NewtonEuler:
@@ -63,8 +61,8 @@ class NewtonEuler:
     ----------
     forces : tuple of (Symbol, Symbol)
         The unknown forces, N: F_01, F_21, F_32, ...
-    payload : PayloadEquations or None
-        The body at the tip.
+    payload : BodyEquations or None
+        The body at the tip, all payloads together.
     near_forces, far_forces : list of (Expr, Expr)
         The force on each link where it begins, F_01, F_12 = -F_21, ..., and where it ends, N.
     loads : list of LinkLoad
@@ -96,15 +94,15 @@ class NewtonEuler:
         x, y = (self.notation.symbol(f"F{pair}{axis}", f"F_{{{pair}{axis}}}") for axis in "xy")
         return x, y
 
-    def _payload(self) -> PayloadEquations | None:
+    def _payload(self) -> BodyEquations | None:
         found = [law.payload for law in self.laws if law.payload is not None]
         if not found:
             return None
         mass, inertia = (sum(column, NOTHING) for column in zip(*found, strict=True))
         force, weight = self._force(f"p{self.n}"), self.weight(mass)
-        acceleration = self.chain.tip_acceleration
-        x, y = (Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
-        return PayloadEquations(mass, inertia, force, (x, y))
+        acceleration, couple = self.chain.tip_acceleration, inertia * self.notation.qdd[-1]
+        newton = tuple(Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
+        return BodyEquations(mass, inertia, acceleration, force, newton, Balance(couple, couple))
 
     @cached_property
     def torques(self) -> dict[int, Definition]:
@@ -144,7 +142,7 @@ class NewtonEuler:
         """Return the sum of the couples on a link, in its joints and from the payload, N m."""
         found = self.joint_couple(link) - self.joint_couple(link + 1)
         if link == self.n and self.payload is not None:
-            found -= self.payload.inertia * self.notation.qdd[link - 1]
+            found -= self.payload.moment.acting
         return found
 
     def weight(self, mass: Expr) -> Vector:
@@ -152,11 +150,16 @@ class NewtonEuler:
         return NOTHING, mass * self.notation.gravity
 
     @cached_property
-    def links(self) -> tuple[LinkEquations, ...]:
+    def links(self) -> tuple[BodyEquations, ...]:
         """The equations of every link."""
         return tuple(self._link(i) for i in range(1, self.n + 1))
 
-    def _link(self, link: int) -> LinkEquations:
+    @property
+    def bodies(self) -> tuple[BodyEquations, ...]:
+        """The equations of every link, and of the payload if there is one."""
+        return self.links if self.payload is None else (*self.links, self.payload)
+
+    def _link(self, link: int) -> BodyEquations:
         s, chain = self.notation, self.chain
         mass, inertia, turning = s.masses[link - 1], s.inertias[link - 1], s.qdd[link - 1]
         begin, end, center = chain.joints[link - 1], chain.joints[link], chain.centers[link - 1]
@@ -165,7 +168,7 @@ class NewtonEuler:
         loads = [load for load in self.loads if load.link == link]
         acceleration = chain.center_accelerations[link - 1]
         forces = [near, far, weight, *(load.force for load in loads)]
-        x, y = (Balance(mass * acceleration[k], sum(f[k] for f in forces)) for k in (0, 1))
+        newton = tuple(Balance(mass * acceleration[k], sum(f[k] for f in forces)) for k in (0, 1))
         about_pivot = link == 1 and chain.pivot_is_fixed
         point = begin if about_pivot else center
         resistance = inertia + mass * s.centers[link - 1] ** 2 if about_pivot else inertia
@@ -174,29 +177,24 @@ class NewtonEuler:
             moment += cross(minus(at, point), force)
         for load in loads:
             moment += of_differences(load.moment + cross(minus(begin, point), load.force))
-        return LinkEquations((x, y), Balance(resistance * turning, expand(moment)), about_pivot)
+        euler = Balance(resistance * turning, expand(moment))
+        force = self.forces[link - 1]
+        return BodyEquations(mass, inertia, acceleration, force, newton, euler, about_pivot)
 
     @cached_property
     def solved_forces(self) -> dict[Symbol, Expr]:
         """Every reaction in terms of angles, rates and accelerations: the textbook's (2.9)."""
         solved: dict[Symbol, Expr] = {}
-        bodies = [*zip(self.forces, (link.newton for link in self.links), strict=True)]
-        if self.payload is not None:
-            bodies.append((self.payload.force, self.payload.newton))
-        for forces, newton in reversed(bodies):
-            sign = 1 if forces == self.forces[0] else -1  # F_01 acts on its own link
-            for symbol, line in zip(forces, newton, strict=True):
-                rest = (line.inertia - line.acting).subs(symbol, 0)  # = sign F
-                solved[symbol] = expand(sign * rest.xreplace(solved))
+        for body in reversed(self.bodies):
+            for k, symbol in enumerate(body.force):
+                solved[symbol] = expand(body.solved(k, body.newton[k].inertia).xreplace(solved))
         return solved
 
     @cached_property
     def reactions(self) -> tuple[Vector, ...]:
         """Force on each link where it begins, N: F_01, F_12, ... as the core has them."""
         known = self.solved_forces
-        return tuple(
-            (expand(x.xreplace(known)), expand(y.xreplace(known))) for x, y in self.near_forces
-        )
+        return tuple((x.xreplace(known), y.xreplace(known)) for x, y in self.near_forces)
 
     @cached_property
     def without_reactions(self) -> tuple[Balance, ...]:

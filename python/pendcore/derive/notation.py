@@ -108,15 +108,11 @@ class Notation:
         self, letter: str, mark: object, latex: object, link: int = 0
     ) -> tuple[Symbol, Symbol, Symbol]:
         """Return the symbols of a coordinate, its rate and its acceleration: q1, qd1, qdd1."""
-        position, rate, acceleration = (
-            self.symbol(f"{letter}{dots}{mark}", f"{shown}_{{{latex}}}", kind, link)
-            for dots, shown, kind in (
-                ("", letter, ANGLE),
-                ("d", rf"\dot{{{letter}}}", RATE),
-                ("dd", rf"\ddot{{{letter}}}", ACCELERATION),
-            )
+        return (
+            self.symbol(f"{letter}{mark}", f"{letter}_{{{latex}}}", ANGLE, link),
+            self.symbol(f"{letter}d{mark}", rf"\dot{{{letter}}}_{{{latex}}}", RATE, link),
+            self.symbol(f"{letter}dd{mark}", rf"\ddot{{{letter}}}_{{{latex}}}", ACCELERATION, link),
         )
-        return position, rate, acceleration
 
     def fresh(self, name: str, latex: str) -> tuple[str, str]:
         """Return a name that no symbol has yet: a second one, as of two dampers, has a number."""

@@ -9,12 +9,10 @@ from pendcore.derive.narration.page import Page
 from pendcore.derive.narration.results import energy, equations_of_motion, first_order, solution
 from pendcore.derive.step import Step
 
-PARTS = (kinematics, newton_euler, equations_of_motion, solution, first_order, energy)
-
 
 def steps(derivation: Derivation) -> tuple[Step, ...]:
     """Return the steps of a derivation."""
     page = Page(derivation)
-    for part in PARTS:
+    for part in (kinematics, newton_euler, equations_of_motion, solution, first_order, energy):
         part(page)
     return tuple(page.steps)

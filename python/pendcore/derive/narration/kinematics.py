@@ -37,8 +37,7 @@ def kinematics(page: Page) -> None:
     text = "The velocity is the derivative of the position with respect to time."
     found = _points(page, centers, chain.center_velocities, 1)
     page.step("Velocities of the mass centres", text, *found)
-    tip = [chain.tip_acceleration] if page.equations.payload is not None else []
-    named, moved = [*centers, *joints[-1:] * len(tip)], [*chain.center_accelerations, *tip]
+    named, moved = [*centers, joints[-1]], [body.acceleration for body in page.equations.bodies]
     text = "The acceleration is the derivative of the velocity with respect to time."
     page.step("Accelerations of the mass centres", text, *_points(page, named, moved, 2))
     page.step(
@@ -128,6 +127,6 @@ def statements(page: Page) -> list[str]:
 def _points(
     page: Page, names: Sequence[Formula], vectors: Sequence[Vector], dots: int
 ) -> Iterator[Sides]:
-    for name, vector in zip(names, vectors, strict=True):
+    for name, vector in zip(names, vectors, strict=False):  # the tip may have no body
         for axis, component in zip("xy", vector, strict=True):
             yield page.coordinate(axis, name, dots), component

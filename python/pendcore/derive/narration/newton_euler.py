@@ -6,7 +6,7 @@ from sympy import expand
 
 from pendcore.derive.chain import cross, minus
 from pendcore.derive.narration.page import Page, Sides, total
-from pendcore.derive.newton_euler import LinkEquations, PayloadEquations
+from pendcore.derive.newton_euler import BodyEquations
 from pendcore.derive.step import Formula
 
 
@@ -66,13 +66,13 @@ def _far_in_words(page: Page, i: int) -> str:
     whose = f"link {i + 1}" if i < page.n else "the payload"
     text = f" ${far}$ is the force of {whose} on link {i} at ${page.joint(i)}$."
     if i == page.n and payload is not None and payload.inertia != 0:
-        couple = page.s.latex(expand(payload.inertia * page.s.qdd[i - 1]))
+        couple = page.s.latex(expand(payload.moment.inertia))
         text += f" The payload turns with link {i}; the couple that this takes, ${couple}$, acts "
         text += "back on the link."
     return text
 
 
-def _link(page: Page, i: int, link: LinkEquations) -> None:
+def _link(page: Page, i: int, link: BodyEquations) -> None:
     """Write a link: link 1 about the fixed point A, (2.1) and (2.2), or about its mass centre.
 
     Link 2 about its mass centre is that of (2.3) to (2.8).
@@ -106,7 +106,7 @@ def _link(page: Page, i: int, link: LinkEquations) -> None:
     page.step(f"Newton-Euler equations of link {i}", text, *found)
 
 
-def _moments_about_pivot(page: Page, link: LinkEquations) -> Sides:
+def _moments_about_pivot(page: Page, link: BodyEquations) -> Sides:
     """Return the moments of G_1 and F_21 about A as determinants."""
     forces = [(page.center(1), page.equations.weight(page.s.masses[0]))]
     forces += [(page.joint(1), page.equations.far_forces[0])] if page.n > 1 else []
@@ -117,7 +117,7 @@ def _moments_about_pivot(page: Page, link: LinkEquations) -> Sides:
     return page.along("k", link.moment.inertia), total(moments)
 
 
-def _written_out(page: Page, link: LinkEquations) -> list[Sides]:
+def _written_out(page: Page, link: BodyEquations) -> list[Sides]:
     """Return (2.5), the moment of F_12 about C_2 and what effects add to it, (2.6) and (2.7)."""
     begin, center, force = page.joint(1), page.center(2), page.equations.near_forces[1]
     x, y = (page.coordinate(axis, begin) - page.coordinate(axis, center) for axis in "xy")
@@ -125,14 +125,11 @@ def _written_out(page: Page, link: LinkEquations) -> list[Sides]:
     rest = expand(link.moment.acting - cross(known, force))
     more = [page.along("k", term) for term in page.s.terms(rest) if term != 0]
     left = page.along("k", link.moment.inertia)
-    accelerations, numbers = page.chain.center_accelerations[1], ("2.6", "2.7")
-    return [(left, total([page.determinant((x, y), force), *more]), "2.5")] + [
-        (page.s.masses[1] * acceleration, line.acting, number)
-        for acceleration, line, number in zip(accelerations, link.newton, numbers, strict=True)
-    ]
+    lines = ((*line, number) for line, number in zip(link.newton, ("2.6", "2.7"), strict=True))
+    return [(left, total([page.determinant((x, y), force), *more]), "2.5"), *lines]
 
 
-def _payload(page: Page, payload: PayloadEquations) -> None:
+def _payload(page: Page, payload: BodyEquations) -> None:
     """Write the equations of the payload."""
     tip, force, couple = page.joint(page.n), page.vector("F", f"p{page.n}"), page.vector("T", "p")
     mass, turning, moment = payload.mass, "", list[Sides]()

@@ -39,42 +39,27 @@ def equations_of_motion(page: Page) -> None:
 
 def _reactions(page: Page) -> Iterator[Sides]:
     """Yield F_p, F_21 and so on, with accelerations put in where the textbook does."""
-    equations, payload = page.equations, page.equations.payload
-    if payload is not None:
-        for axis, symbol, line in zip("xy", payload.force, payload.newton, strict=True):
-            inertia = payload.mass * page.coordinate(axis, page.joint(page.n), 2)
-            yield symbol, line.acting + symbol - inertia
-    for i in range(page.n, 0, -1):
+    points = [*map(page.center, range(1, page.n + 1)), page.joint(page.n)]
+    for i, body in reversed([*enumerate(page.equations.bodies, start=1)]):
         for k, axis in enumerate("xy"):
-            symbol, line = equations.forces[i - 1][k], equations.links[i - 1].newton[k]
-            acceleration = page.coordinate(axis, page.center(i), 2)
+            acceleration = page.coordinate(axis, points[i - 1], 2)
             if i == page.n == 2:
-                acceleration = page.chain.center_accelerations[i - 1][k]
-            force = page.s.masses[i - 1] * acceleration - line.acting.subs(symbol, 0)
-            yield symbol, force if i == 1 else -force, "2.9" if i == 2 and axis == "y" else ""
+                acceleration = body.acceleration[k]
+            force = body.solved(k, body.mass * acceleration)
+            yield body.force[k], force, "2.9" if i == 2 and axis == "y" else ""
 
 
 def _put_in(page: Page) -> None:
     """Write (2.10) and (2.11): the reactions put into both moment equations."""
-    equations, chain = page.equations, page.chain
+    equations = page.equations
     known: dict[Expr, Expr] = {}
     brackets: dict[Expr, Expr] = {}  # m (a - g): the bracket's contents stay together
-
-    def inertia(mass: Expr, acceleration: Expr, axis: int) -> Expr:
-        symbol = Dummy()
-        brackets[symbol] = acceleration - equations.weight(Integer(1))[axis]
-        return expand(mass * symbol)
-
     for axis in (0, 1):
-        if equations.payload is not None:
-            mass, acceleration = equations.payload.mass, chain.tip_acceleration[axis]
-            known[equations.payload.force[axis]] = -inertia(mass, acceleration, axis)
-        for i in (2, 1):
-            acceleration = chain.center_accelerations[i - 1][axis]
-            near = inertia(page.s.masses[i - 1], acceleration, axis)
-            near -= equations.far_forces[i - 1][axis].xreplace(known)
-            near -= sum(load.force[axis] for load in equations.loads if load.link == i)
-            known[equations.forces[i - 1][axis]] = expand(near if i == 1 else -near)
+        for body in reversed(equations.bodies):
+            bracket, weight = Dummy(), equations.weight(body.mass)[axis]
+            brackets[bracket] = body.acceleration[axis] - equations.weight(Integer(1))[axis]
+            force = body.solved(axis, body.mass * bracket + weight)
+            known[body.force[axis]] = expand(force.xreplace(known))
     page.step(
         "Equations of motion",
         "The joint reactions are put into the moment equations of both links.",

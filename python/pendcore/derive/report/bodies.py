@@ -29,14 +29,13 @@ TITLE = 18.0
 """Height of the line above a body, points of print."""
 
 
-@lettering()
+@lettering
 def mechanism(page: Page, q: Sequence[float]) -> Drawing:
     """Draw the chain at given angles, rad, as in the textbook's Fig. 1, with the page's names."""
     scene = page.derivation.scene
     places, lengths = scene.positions(0.0, q), [link.length for link in scene.links]
+    centers = scene.mass_centers(0.0, q) - places[0]
     places -= places[0]  # a pivot that is moved is drawn at the origin
-    along = [link.center * direction(angle) for link, angle in zip(scene.links, q, strict=True)]
-    centers = places[:-1] + np.array(along)
     total = float(np.hypot(*np.ptp(np.vstack([places, centers]), axis=0)))
     figure = Figure(figsize=(5.6, 4.6))
     on = sketch.Sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), max(total, 0.6 * sum(lengths)))
@@ -101,14 +100,13 @@ def _acting(on: Sketch, effects: Sequence[Any], places: Floats, last: float) -> 
             name(on, beside, r"$\mathbf{r}_A(t)$", side)
 
 
-@lettering()
+@lettering
 def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Drawing:
     """Draw each link at its angle, rad, with what acts on it, or alone for those who are to draw.
 
     Arrows show what counts as positive; the page names it all.
     """
-    has_payload = page.equations.payload is not None
-    bodies = page.n + has_payload
+    bodies = len(page.equations.bodies)
     rows = -(-bodies // A_ROW)
     columns = -(-bodies // rows)
     figure = Figure(figsize=(3.3 * columns, 3.3 * rows))
@@ -116,12 +114,11 @@ def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Drawi
     sheets = figure.subplots(rows, columns, squeeze=False, gridspec_kw=whole).ravel()
     for sheet in sheets[bodies:]:
         sheet.set_axis_off()
-    titles = [f"link {i}" for i in range(1, page.n + 1)] + ["payload"] * has_payload
-    for i, (sheet, title) in enumerate(zip(sheets, titles, strict=False), start=1):
+    for i, sheet in enumerate(sheets[:bodies], start=1):
         if i <= page.n:
-            on = _link(sheet, page, i, q[i - 1], forces=forces)
+            title, on = f"link {i}", _link(sheet, page, i, q[i - 1], forces=forces)
         else:
-            on = _payload(sheet, page, forces=forces)
+            title, on = "payload", _payload(sheet, page, forces=forces)
         sheet.text(0.5, 0.98, title, transform=sheet.transAxes, ha="center", va="top")
         sketch.finish(on, above=TITLE)
     if not forces:
@@ -154,7 +151,7 @@ def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sket
     couples = [(start, angle, equations.joint_couple(i), 1.0)]
     couples.append((end, back, equations.joint_couple(i + 1), -1.0))
     if i == page.n and equations.payload is not None:
-        couples.append((end, back, equations.payload.inertia * page.s.qdd[-1], -1.0))
+        couples.append((end, back, equations.payload.moment.inertia, -1.0))
     for place, towards, couple, sense in couples:
         if couple != 0:
             sketch.couple(on, place, _clear(towards), f"${write(couple)}$", sense=sense)
@@ -181,8 +178,8 @@ def _payload(axes: Axes, page: Page, *, forces: bool) -> Sketch:
         x, y = payload.force
         _forces(on, at, np.pi / 4, (-x, -y), page, 0.36)
         if payload.inertia != 0:
-            couple = page.s.latex(payload.inertia * page.s.qdd[-1])
-            sketch.couple(on, at, direction(0.8), f"${couple}$", 0.16)
+            couple = f"${page.s.latex(payload.moment.inertia)}$"
+            sketch.couple(on, at, direction(0.8), couple, 0.16)
     return on
 
 

@@ -132,14 +132,13 @@ def _problem(derivation: Derivation, case: Case, *, by_hand: bool = False) -> li
 
 def _steps(derivation: Derivation, case: Case, *, blanks: bool = False) -> list[Block]:
     """Return the derivation; the free bodies come before the first of their equations."""
-    names, found, drawn = _names(derivation), list[Block](), False
+    names, found = _names(derivation), list[Block]()
     for step in derivation.steps:
         if step.title == "Effects":
             step = replace(step, text="What acts besides gravity is stated above.")
         heading, text, *displayed = step.blocks(lambda e: _value(e, derivation))
         found += [heading, text]
-        if not drawn and step.title.startswith("Newton-Euler"):
-            drawn = True
+        if step.title == "Newton-Euler equations of link 1":
             found.append(free_bodies(Page(derivation), case.q0, forces=not blanks))
         found += _blanks(step, names) if blanks else displayed
     return found

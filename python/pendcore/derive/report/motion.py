@@ -171,7 +171,7 @@ def energy_check(derivation: Derivation, solution: Solution) -> dict[str, Any]:
     }
 
 
-@lettering()
+@lettering
 def angles(solution: Solution) -> Drawing:
     """Draw the textbook's figure, the angles over time."""
     figure, axes = _sheets(solution.q.shape[1])
@@ -179,7 +179,7 @@ def angles(solution: Solution) -> Drawing:
     return Drawing("angles", OF_LINKS, figure)
 
 
-@lettering()
+@lettering
 def empty_axes(solution: Solution) -> Drawing:
     """Draw the axes of the angles with nothing in them: the scale gives nothing away."""
     span = solution.t[0], solution.t[-1]
@@ -197,7 +197,7 @@ def empty_axes(solution: Solution) -> Drawing:
     return Drawing("axes", OF_LINKS, figure)
 
 
-@lettering()
+@lettering
 def reactions(derivation: Derivation, solution: Solution) -> Drawing:
     """Draw the joint forces as the derivation has them: F_01, F_21, ..."""
     forces = solution.reactions().copy()
@@ -215,7 +215,7 @@ def reactions(derivation: Derivation, solution: Solution) -> Drawing:
     return Drawing("reactions", words, figure)
 
 
-@lettering()
+@lettering
 def energies(solution: Solution) -> Drawing:
     """Draw the energies, and what their balance leaves over."""
     energy = solution.energy()

@@ -95,25 +95,24 @@ class Start:
         derivation, case, scene = self.derivation, self.case, self.derivation.scene
         equations, write, time = derivation.equations, derivation.symbols.latex, case.t_span[0]
         run = simulate(scene, (time, time), case.q0, case.qd0, on_failure="ignore")
-        own = [(symbol, "rad/s^2", symbol) for symbol in derivation.symbols.qdd]
-        of_core = [*run.accelerations()[0]]
+        qdd, energy = derivation.symbols.qdd, run.energy()
+        rows: list[tuple[Any, str, Expr, float]] = [
+            (a, "rad/s^2", a, core) for a, core in zip(qdd, run.accelerations()[0], strict=True)
+        ]
         forces = zip(equations.forces, derivation.reactions, run.reactions()[0], strict=True)
-        for i, (names, pair, force) in enumerate(forces):
+        for i, of_joint in enumerate(forces):
             sign = 1 if i == 0 else -1  # F_12 is the core's, F_21 the derivation's
-            own += [(name, "N", sign * x) for name, x in zip(names, pair, strict=True)]
-            of_core += [*(sign * force)]
+            parts = zip(*of_joint, strict=True)
+            rows += [(name, "N", sign * x, sign * core) for name, x, core in parts]
         if equations.locked:  # the couples that make the free chain's accelerations these
             free = scene.replace(effects=[x for x in scene.effects if x.kind != "lock"])
             change = run.accelerations() - free.accelerations(run.t, run.q, run.qd)
             couples = np.cumsum((scene.mass_matrix(run.q[0]) @ change[0])[::-1])[::-1]
             for joint, couple in derivation.holding_couples.items():
-                own.append((equations.holding[joint], "N m", couple))
-                of_core.append(couples[joint - 1])
-        energy = run.energy()
-        own += [("T", "J", derivation.kinetic_energy), ("V", "J", derivation.potential_energy)]
-        of_core += [energy.kinetic[0], energy.potential[0]]
-        rows = zip(own, of_core, strict=True)
-        return [(write(name), unit, self.value(x), float(core)) for (name, unit, x), core in rows]
+                rows.append((equations.holding[joint], "N m", couple, couples[joint - 1]))
+        rows.append(("T", "J", derivation.kinetic_energy, energy.kinetic[0]))
+        rows.append(("V", "J", derivation.potential_energy, energy.potential[0]))
+        return [(write(name), unit, self.value(x), float(core)) for name, unit, x, core in rows]
 
 
 def at_the_start(derivation: Derivation, case: Case) -> dict[str, Any]:

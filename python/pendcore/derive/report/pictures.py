@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 
 from pendcore.derive.document import Drawing
 
-_FONT: Any = {
+lettering = mpl.rc_context({
     "mathtext.fontset": "stix",
     "font.family": "STIXGeneral",
     "font.size": 11,
     "axes.titlesize": 11,
     "svg.hashsalt": "pendcore",
-}
+})  # fmt: skip
+"""Decorates what draws: figures have the letters of the equations, and are saved the same."""
 
 
-@contextmanager
-def lettering() -> Iterator[None]:
-    """Draw figures with the letters of the equations, and save them the same every time."""
-    with mpl.rc_context(_FONT):
-        yield
-
-
-@lettering()
+@lettering
 def save(drawing: Drawing, path: Path) -> None:
     """Write a picture into a file, of the kind that its suffix says, the same every time."""
     dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(path.suffix)

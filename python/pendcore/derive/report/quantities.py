@@ -43,11 +43,9 @@ class Scales:
     """
 
     def __init__(self, derivation: Derivation, found: Iterable[tuple[str, float]] = ()) -> None:
-        scene, payload = derivation.scene, derivation.equations.payload
+        scene, values = derivation.scene, derivation.values
         lengths = [abs(link.length) for link in scene.links]
-        mass = sum(link.mass for link in scene.links)
-        if payload is not None:
-            mass += float(payload.mass.xreplace(derivation.values))
+        mass = sum(float(body.mass.xreplace(values)) for body in derivation.equations.bodies)
         gravity = abs(scene.gravity)
         moment = mass * gravity * sum(lengths)
         self.of = {"rad/s^2": gravity / min(lengths), "N": mass * gravity, "N m": moment,
