@@ -87,10 +87,16 @@ export class Chart {
 
   /** The least and the largest number of all curves along an axis, on its scale. */
   #extent(axis) {
-    const places = this.curves.flatMap((curve) => Array.from(curve[axis], this.scaled));
-    const finite = places.filter(Number.isFinite);
-    if (finite.length === 0) return [0, 1];
-    return [Math.min, Math.max].map((most) => finite.reduce((a, b) => most(a, b)));
+    let [low, high] = [Infinity, -Infinity];
+    for (const curve of this.curves) {
+      for (const value of curve[axis]) {
+        const place = this.scaled(value);
+        if (!Number.isFinite(place)) continue;
+        low = Math.min(low, place);
+        high = Math.max(high, place);
+      }
+    }
+    return low > high ? [0, 1] : [low, high];
   }
 
   /** Where a point stands on the canvas, CSS pixels. */
