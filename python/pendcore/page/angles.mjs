@@ -12,8 +12,7 @@ const FROM_VERTICAL = {
 
 /** What the box under the picture says. */
 export function convention() {
-  const box = /** @type {any} */ (document.getElementById("vertical"));
-  return box.checked ? FROM_VERTICAL : FROM_X;
+  return document.querySelector("#vertical:checked") ? FROM_VERTICAL : FROM_X;
 }
 
 /** The same angle from -pi to pi, rad. */

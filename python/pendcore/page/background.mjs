@@ -8,24 +8,21 @@ export class Background {
   constructor(bytes) {
     const scripts = ["core-js", "worker-js"].map((id) => document.getElementById(id).textContent);
     this.worker = new Worker(URL.createObjectURL(new Blob(scripts, { type: "text/javascript" })));
-    this.worker.postMessage({ bytes: bytes.slice(0) });
-    this.waiting = new Map();
-    this.last = 0;
-    this.worker.onmessage = ({ data: told }) => {
-      if (told.partial) return this.progress?.(told.partial);
-      const { resolve, reject } = this.waiting.get(told.id) ?? {};
-      this.waiting.delete(told.id);
-      return told.failure ? reject?.(new Error(told.failure)) : resolve?.(told.answer);
+    this.worker.postMessage({ bytes });
+    /** Who waits for an answer: the worker answers in the order in which it was asked. */
+    this.waiting = [];
+    this.worker.onmessage = ({ data: { partial, failure, answer } }) => {
+      if (partial) return this.progress?.(partial);
+      const { resolve, reject } = this.waiting.shift();
+      return failure ? reject(new Error(failure)) : resolve(answer);
     };
     this.worker.onerror = (event) => {
       const reason = new Error(event.message || "the browser starts no worker");
-      for (const { reject } of this.waiting.values()) reject(reason);
-      this.waiting.clear();
+      for (const { reject } of this.waiting.splice(0)) reject(reason);
     };
   }
-  ask(task, given, more = {}) {
-    const id = ++this.last;
-    this.worker.postMessage({ id, task, given, ...more });
-    return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+  ask(task, given, more) {
+    this.worker.postMessage({ task, given, ...more });
+    return new Promise((resolve, reject) => this.waiting.push({ resolve, reject }));
   }
 }

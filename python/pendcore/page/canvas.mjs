@@ -9,10 +9,9 @@ export function color(name) {
 export function fitted(canvas) {
   const ratio = window.devicePixelRatio || 1;
   const { clientWidth: width, clientHeight: height } = canvas;
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-  }
+  const [across, down] = [width, height].map((size) => Math.round(size * ratio));
+  if (canvas.width !== across || canvas.height !== down)
+    Object.assign(canvas, { width: across, height: down });
   const pen = canvas.getContext("2d");
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);
@@ -36,7 +35,6 @@ export function drawLine(pen, ...places) {
 export function drawText(pen, text, x, y, fill) {
   pen.strokeStyle = color("panel");
   pen.lineWidth = 4;
-  pen.lineJoin = "round";
   pen.strokeText(text, x, y);
   pen.fillStyle = fill;
   pen.fillText(text, x, y);

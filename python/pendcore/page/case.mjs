@@ -40,27 +40,18 @@ export function addressOf(given) {
 function tomlValue(value) {
   if (Array.isArray(value)) return `[${value.map(tomlValue).join(", ")}]`;
   if (typeof value === "string") return JSON.stringify(value).replaceAll("\x7f", "\\u007f");
-  if (typeof value === "boolean") return String(value);
   if (typeof value === "object") {
     const parts = Object.entries(value).map(([name, one]) => `${name} = ${tomlValue(one)}`);
     return `{ ${parts.join(", ")} }`;
   }
-  if (value === Infinity) return "inf";
-  if (value === -Infinity) return "-inf";
-  return Number.isInteger(value) && Math.abs(value) < 1e15
-    ? `${value}`
-    : `${value}`.replace(/^(-?\d+)e/, "$1.0e");
-}
-
-/** The entries of a table that have a value. */
-function entriesOf(table) {
-  return Object.entries(table).filter(([, value]) => value !== undefined && value !== null);
+  return String(value)
+    .replace("Infinity", "inf")
+    .replace(/^(-?\d+)e/, "$1.0e");
 }
 
 function tomlTable(table) {
-  return entriesOf(table)
-    .map(([name, value]) => `${name} = ${tomlValue(value)}\n`)
-    .join("");
+  const lines = Object.entries(table).map(([name, value]) => `${name} = ${tomlValue(value)}\n`);
+  return lines.join("");
 }
 
 /** The text of a case file, which `pendcore run` takes. */
@@ -84,7 +75,7 @@ function pythonValue(value) {
 }
 
 function pythonCall(name, parameters, partOf) {
-  const given = entriesOf(parameters).map(([key, value]) => {
+  const given = Object.entries(parameters).map(([key, value]) => {
     const isPart = typeof value === "object" && !Array.isArray(value);
     return `${key}=${isPart ? pythonCall(`pc.effects.${partOf[key]}`, value, partOf) : pythonValue(value)}`;
   });
@@ -110,7 +101,8 @@ export function toPython(given, kinds) {
   const { t_start, t_end, ...options } = given.run;
   lines.push(`    scene, q0=${pythonValue(given.start.q)}, qd0=${pythonValue(given.start.qd)},`);
   lines.push(`    t_span=(${t_start ?? 0}, ${t_end}),`);
-  for (const [name, value] of entriesOf(options)) lines.push(`    ${name}=${pythonValue(value)},`);
+  for (const [name, value] of Object.entries(options))
+    lines.push(`    ${name}=${pythonValue(value)},`);
   lines.push(")", "");
   return lines.join("\n");
 }

@@ -7,7 +7,6 @@ const LEFT = 56;
 const RIGHT = 12;
 const TOP = 8;
 const BOTTOM = 40;
-const MOST_TICKS = 10;
 const DASH = [5, 4];
 const NEAR = 40; // CSS pixels from the pointer, within which a curve over no time is read
 
@@ -15,20 +14,16 @@ const NEAR = 40; // CSS pixels from the pointer, within which a curve over no ti
 function ticks(low, high) {
   const span = high - low || 1;
   const step = 10 ** Math.floor(Math.log10(span / 4));
-  const wide = [1, 2, 5, 10].map((k) => k * step).find((one) => span / one <= 6) ?? step;
+  const wide = [1, 2, 5, 10].map((k) => k * step).find((one) => span / one <= 6);
   const first = Math.ceil(low / wide);
-  const count = Math.min(Math.floor(high / wide + 1e-9) - first + 1, MOST_TICKS);
-  return Array.from({ length: Math.max(count, 0) }, (_x, k) => (first + k) * wide);
+  const count = Math.floor(high / wide + 1e-9) - first + 1;
+  return Array.from({ length: count }, (_x, k) => (first + k) * wide);
 }
 
 function label(value) {
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(0);
   return String(Number(value.toPrecision(6)));
-}
-
-function fourDigits(value) {
-  return value.toPrecision(4).replaceAll("-", "−");
 }
 
 /** The value of a curve at a time, on the straight line between two of its points. */
@@ -60,37 +55,27 @@ export class Chart {
     this.figure = figure;
     this.legend = figure.appendChild(document.createElement("figcaption"));
     this.canvas = figure.appendChild(document.createElement("canvas"));
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", figure.getAttribute("aria-label"));
+    Object.assign(this.canvas, { role: "img", ariaLabel: figure.ariaLabel });
     this.names = names;
     this.scaled = log ? Math.log10 : (value) => value;
     this.back = log ? (value) => 10 ** value : (value) => value;
     this.ticks = log ? (...ends) => ticks(...ends).filter(Number.isInteger) : ticks;
     this.isDown = false; // y points up, as it does not in the plane of the pendulum
-    this.curves = [];
-    /** Where the pointer is, CSS pixels, and what is drawn beside the curves. */
-    this.pointer = null;
-    this.shown = {};
+    this.pointer = null; // where it is, CSS pixels
     const point = ({ type, offsetX, offsetY }) => {
       this.pointer = /down|move/.test(type) ? [offsetX, offsetY] : null;
       this.draw(this.shown);
     };
     for (const what of ["down", "move", "leave", "cancel"])
       this.canvas.addEventListener(`pointer${what}`, point);
-    this.box = [0, 1, 0, 1];
-    /** All that does not move with time, drawn once, and what it was drawn for. */
+    /** All that does not move with time, drawn once. */
     this.still = document.createElement("canvas");
-    this.drawnFor = "";
-    this.version = 0;
-    /** The size of the plane between the axes, CSS pixels. */
-    this.width = 0;
-    this.height = 0;
   }
 
   /** Curves are { name, color, x, y, hasDots, isDashed }; what is not a number is a gap. */
   set(curves) {
     this.curves = curves;
-    this.version += 1;
+    this.drawnFor = "";
     const [left, right] = this.#extent("x");
     const [low, high] = this.#extent("y");
     const beside = right - left < least(right) ? least(right) : 0;
@@ -128,10 +113,11 @@ export class Chart {
     this.shown = shown;
     const { pen, width, height } = fitted(this.canvas);
     if (width === 0) return; // in a tab that is closed
+    /** The size of the plane between the axes, CSS pixels. */
     this.width = width - LEFT - RIGHT;
     this.height = height - TOP - BOTTOM;
-    const { canvas, still, version } = this;
-    const needed = String([canvas.width, canvas.height, shade, color("ink"), version]);
+    const { canvas, still } = this;
+    const needed = String([canvas.width, canvas.height, shade, color("ink")]);
     if (needed !== this.drawnFor) {
       [still.width, still.height] = [canvas.width, canvas.height];
       const quiet = still.getContext("2d");
@@ -180,16 +166,15 @@ export class Chart {
   /** Writes what is read below the axes: the time, then values, each behind its curve's mark. */
   #tell(pen) {
     const { reading } = this;
-    const texts = reading.map(({ told }) => told.map(fourDigits).join(", "));
+    const digits = (value) => value.toPrecision(4).replaceAll("-", "−");
+    const texts = reading.map(({ told }) => told.map(digits).join(", "));
     const time = reading[0]?.t;
+    texts.unshift(time === undefined ? "" : `${time.toFixed(2)} s`);
     pen.font = FONT;
     pen.textAlign = "left";
     const end = LEFT + this.width - pen.measureText(this.names[0]).width;
     let [x, y] = [0, TOP + this.height + BOTTOM - 6];
-    for (const [k, text] of [
-      time === undefined ? "" : `${time.toFixed(2)} s`,
-      ...texts,
-    ].entries()) {
+    for (const [k, text] of texts.entries()) {
       const width = pen.measureText(text).width + 22;
       if (x + width > end) return;
       if (k > 0) drawMark(pen, [x + 4, y - 4], reading[k - 1]);

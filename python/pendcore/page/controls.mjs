@@ -3,11 +3,7 @@
 import { convention } from "./angles.mjs";
 
 function element(tag, properties = {}, children = []) {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(properties)) {
-    if (name in made) made[name] = value;
-    else made.setAttribute(name, value);
-  }
+  const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
   return made;
 }
@@ -53,10 +49,8 @@ function group(title, fields) {
   return element("fieldset", {}, [element("legend", { textContent: title }), ...fields]);
 }
 
-function button(textContent, act) {
-  const made = element("button", { type: "button", textContent });
-  made.addEventListener("click", act);
-  return made;
+function button(textContent, onclick) {
+  return element("button", { type: "button", textContent, onclick });
 }
 
 export class Controls {
@@ -93,7 +87,7 @@ export class Controls {
       max: String(rounded(high, step, Math.ceil)),
       step: String(step),
       value: String(value),
-      "aria-label": `${name}, ${unit || "no unit"}`,
+      ariaLabel: `${name}, ${unit || "no unit"}`,
     });
     const take = (text, other) => {
       const number = Number(text);
@@ -188,7 +182,7 @@ export class Controls {
   #more() {
     const named = ({ kind, name }) => [kind, name];
     const offered = this.kinds.filter(({ kind }) => kind in this.defaults);
-    const select = menuOf(offered.map(named), { "aria-label": "Kind of effect" });
+    const select = menuOf(offered.map(named), { ariaLabel: "Kind of effect" });
     const add = () => {
       const copy = structuredClone(this.defaults[select.value]);
       for (const key of ["joint", "link"]) if (copy[key] > this.given.link.length) copy[key] = 1;

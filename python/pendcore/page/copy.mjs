@@ -2,11 +2,11 @@
 
 const SHOWN = 1200; // ms for which a button says that it has copied
 
-/** Pages from a file have no clipboard in some browsers: a hidden field does as well. */
-async function copyText(text) {
+export async function copyAndSay(button, text) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
+    // Pages from a file have no clipboard in some browsers: a hidden field does as well.
     const field = document.createElement("textarea");
     field.value = text;
     document.body.append(field);
@@ -14,10 +14,6 @@ async function copyText(text) {
     document.execCommand("copy");
     field.remove();
   }
-}
-
-export async function copyAndSay(button, text) {
-  await copyText(text);
   button.dataset.label ??= button.textContent; // a second click finds "Copied"
   button.textContent = "Copied";
   setTimeout(() => (button.textContent = button.dataset.label), SHOWN);

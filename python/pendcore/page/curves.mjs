@@ -14,13 +14,13 @@ const subscript = (number) => String(number).replace(/\d/g, (digit) => "₀₁�
 /** What can be drawn of each link, by its number; without one it names that of all links. */
 const OF_LINKS = [
   {
-    name: (number, told) => `${told.letter}${subscript(number)}`,
+    name: (number) => `${convention().letter}${subscript(number)}`,
     unit: "rad",
     isAngle: true,
     of: (_run, _t, state, i) => convention().angle(state[i]),
   },
   {
-    name: (number, told) => `${told.dotted}${subscript(number)}`,
+    name: (number) => `${convention().dotted}${subscript(number)}`,
     unit: "rad/s",
     of: (run, _t, state, i) => convention().rate(state[run.n + i]),
   },
@@ -47,18 +47,15 @@ const OF_ALL = [
 
 /** The quantities for a menu: of all links together, then of each link, then of the whole. */
 function choices(n) {
-  const told = convention();
   const links = Array.from({ length: n }, (_x, i) => ({ number: i + 1, link: i }));
   const ofLinks = [{ number: "", isTogether: true }, ...links].flatMap(({ number, ...more }) =>
-    OF_LINKS.map((one) => ({ ...one, ...more, name: one.name(number, told) })),
+    OF_LINKS.map((one) => ({ ...one, ...more, name: one.name(number) })),
   );
   return [...ofLinks, ...OF_ALL].map((one) => ({ ...one, label: `${one.name} (${one.unit})` }));
 }
 
 export class Curves {
-  /** The times at which the run is drawn, and its states then. */
-  times = [];
-  states = [];
+  /** What the menus offer. */
   offered = [];
 
   constructor(byId) {
@@ -107,7 +104,7 @@ export class Curves {
     this.choose();
   }
 
-  /** Takes some times in each of the run's own steps, the more the faster it is. */
+  /** Takes some times in each of the run's own steps, the more the faster it is, and its states. */
   #sample() {
     const { run } = this;
     const steps = [...run.steps];

@@ -44,9 +44,8 @@ _PATIENCE = 10.0
 _FRAME_RATE, _FRAME_TURN, _MOST_FRAMES = 60, 0.1, 3600
 """A page that plays back has so many frames a second, or one whenever a link has turned by so much,
 rad: it draws straight lines from one to the next."""
-_IMPORT = re.compile(r'^import [^;]*? from "[^"]+";\n', re.MULTILINE)
-_EXPORT = re.compile(
-    r"^export (?=(async )?(function|class|const))|^export \{[^}]*\};\n", re.MULTILINE
+_IMPORT_OR_EXPORT = re.compile(
+    r"^import [^;]*?;\n|^export (?=(async )?(function|class|const))|^export [^;]*?;\n", re.MULTILINE
 )
 
 
@@ -114,7 +113,7 @@ def _source(name: str) -> str:
 
 def _bundle(names: tuple[str, ...]) -> str:
     """Return modules one after the other, as one script: their names do not collide."""
-    return "\n".join(_EXPORT.sub("", _IMPORT.sub("", _source(name))) for name in names)
+    return "\n".join(_IMPORT_OR_EXPORT.sub("", _source(name)) for name in names)
 
 
 def _plain_case(case: Case, solution: Solution) -> dict[str, Any]:

@@ -8,46 +8,33 @@ const isRow = (value) => Array.isArray(value) && value.every(isNumber);
 /** Half of a surrogate pair is no text: neither TOML nor a file of Python can hold it. */
 const isText = (value) => typeof value === "string" && !/\p{Surrogate}/u.test(value);
 
-/** What values of each type are, and how that is said. */
-const TYPES = {
-  int: [Number.isInteger, "a whole number"],
-  float: [isNumber, "a number"],
-  "optional float": [isNumber, "a number"],
-  pair: [(value) => isRow(value) && value.length === 2, "two numbers"],
-  floats: [isRow, "a list of numbers"],
-  "float or floats": [(value) => isNumber(value) || isRow(value), "a number, or a list of them"],
-  bool: [(value) => typeof value === "boolean", "true or false"],
-  text: [isText, "text"],
-  finite: [Number.isFinite, "a finite number"],
-};
-
-/** A field that a table may have: `read` copies its value, or throws an error that names it. */
-function field(name, read, required = true) {
-  return { name, read, required };
-}
-
-function ofType(type) {
-  const [is, told] = TYPES[type];
+/** What copies a value that passes a test, or throws an error that names it. */
+function mustBe(told, test) {
   return (where, value) => {
-    if (!is(value)) throw new Error(`${where}: must be ${told}`);
+    if (!test(value)) throw new Error(`${where}: must be ${told}`);
     return Array.isArray(value) ? [...value] : value;
   };
 }
 
+/** What reads values of each type. */
+const TYPES = {
+  int: mustBe("a whole number", Number.isInteger),
+  float: mustBe("a number", isNumber),
+  "optional float": mustBe("a number", isNumber),
+  pair: mustBe("two numbers", (value) => isRow(value) && value.length === 2),
+  floats: mustBe("a list of numbers", isRow),
+  "float or floats": mustBe("a number, or a list of them", (x) => isNumber(x) || isRow(x)),
+  bool: mustBe("true or false", (value) => typeof value === "boolean"),
+};
+const finite = mustBe("a finite number", Number.isFinite);
+
 function oneOf(words) {
-  return (where, value) => {
-    if (!words.includes(value)) throw new Error(`${where}: must be one of ${words.join(", ")}`);
-    return value;
-  };
+  return mustBe(`one of ${words.join(", ")}`, (value) => words.includes(value));
 }
 
-/** Rows of a state have an angle or a rate for each link. */
-function rowOf(count) {
-  return (where, value) => {
-    if (!isRow(value) || value.length !== count || !value.every(Number.isFinite))
-      throw new Error(`${where}: must be ${count} finite numbers`);
-    return [...value];
-  };
+/** A field that a table may have, and what reads its value. */
+function field(name, read, required = true) {
+  return { name, read, required };
 }
 
 /** A copy of a table with the fields that it may have. What is null counts as left out. */
@@ -77,7 +64,7 @@ function parametersOf(described, kinds) {
     const part = kinds.find((one) => one.name === type);
     const read = part
       ? (where, value) => table(where, value, parametersOf(part, kinds))
-      : ofType(type);
+      : TYPES[type];
     return field(name, read, required);
   });
 }
@@ -94,18 +81,20 @@ function effect(where, given, kinds) {
  * effects and their parts, `options` those of a run: name, and type or words.
  */
 export function knownCase(given, { kinds, options }) {
-  const ofLink = ["mass", "length", "center", "inertia"].map((x) => field(x, ofType("float")));
+  const ofLink = ["mass", "length", "center", "inertia"].map((x) => field(x, TYPES.float));
   const count = Array.isArray(given?.link) ? given.link.length : 0;
   if (count === 0) throw new Error("link: must be a list of one or more");
-  const rows = ["q", "qd"].map((name) => field(name, rowOf(count)));
-  const finite = ofType("finite");
-  const ofRun = options.map((one) =>
-    field(one.name, one.words ? oneOf(one.words) : ofType(one.type), false),
+  const isOfState = (value) =>
+    isRow(value) && value.length === count && value.every(Number.isFinite);
+  const row = mustBe(`${count} finite numbers`, isOfState);
+  const rows = ["q", "qd"].map((name) => field(name, row));
+  const ofRun = options.map(({ name, words, type }) =>
+    field(name, words ? oneOf(words) : TYPES[type], false),
   );
   const times = [field("t_start", finite, false), field("t_end", finite)];
   return table("", given, [
-    field("name", ofType("text"), false),
-    field("gravity", ofType("float")),
+    field("name", mustBe("text", isText), false),
+    field("gravity", TYPES.float),
     field("link", (where, x) => list(where, x, (at, one) => table(at, one, ofLink))),
     field("effect", (where, x) => list(where, x, (at, one) => effect(at, one, kinds))),
     field("start", (where, x) => table(where, x, rows)),

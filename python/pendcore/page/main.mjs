@@ -39,25 +39,10 @@ function away(angle) {
 }
 
 class Page {
-  run = null;
-  ghost = null;
-  /** The run beside this one, if there is one. */
-  other = null;
-  neighbours = null;
-  hash = "";
-  copied = null;
-  measured = undefined;
-  /** The number of the joint that is dragged, or 0, and whether it was since the last frame. */
+  /** The number of the joint that is dragged, or 0. */
   dragged = 0;
-  isMoved = false;
-  isPlaying = false;
-  settling = undefined;
-  before = undefined;
   /** Whether the case was refused, so that the picture is older than it. */
   isRefused = false;
-  comparisons = {};
-  /** What is said as long as it is not known until when the run is right. */
-  unknown = "";
 
   constructor(core, bytes) {
     this.core = core;
@@ -70,8 +55,6 @@ class Page {
     if (core) {
       this.background = new Background(bytes);
       this.controls = new Controls(byId, data, () => this.changed());
-    } else {
-      document.body.classList.add("without-core");
     }
     this.rerun();
     this.controls?.show(this.given);
@@ -139,6 +122,7 @@ class Page {
     this.neighbours = null;
     this.isRefused = false;
     if (writeCase(given) === original) run.until = data.valid_until;
+    /** What is said as long as it is not known until when the run is right. */
     this.unknown = `how far it is right is ${core ? "being found out" : "not known"}`;
     say(run.success ? "" : run.message);
     this.t = run.within(this.t);
@@ -174,6 +158,7 @@ class Page {
   showBeside() {
     const name = byId("compare").value;
     this.ghost = this.#beside(this.ghost, byId("ghost").checked && away(GHOST));
+    /** The run beside this one, if there is one. */
     this.other = this.#beside(this.other, this.comparisons[name]);
     for (const id of ["own-name", "beside"]) byId(id).hidden = !this.other;
     byId("other-name").textContent = name;
@@ -270,10 +255,6 @@ class Page {
   frame(now) {
     const passed = Math.min((now - (this.before ?? now)) / 1000, 0.25);
     this.before = now;
-    if (this.isMoved) {
-      this.isMoved = false;
-      this.changed();
-    }
     if (this.isPlaying && !this.dragged) {
       const { run } = this;
       this.t = run.within(this.t + run.direction * passed * Number(byId("speed").value));
@@ -412,7 +393,7 @@ class Page {
 
 async function begin() {
   const bytes = await coreBytes();
-  const core = bytes && (await load(bytes.slice(0)));
+  const core = bytes && (await load(bytes));
   const page = new Page(core, bytes);
   /** @type {any} */ (window).pendcorePage = page;
   page.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);

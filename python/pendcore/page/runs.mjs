@@ -16,14 +16,16 @@ class Played {
   /** Until when it is right, s; null as long as that is not known. */
   until = null;
 
-  constructor(given, begin, end, { message, success }) {
-    this.begin = begin;
-    this.end = end;
+  constructor(given, { t, accounts, message, success }) {
+    this.steps = t;
+    this.begin = t[0];
+    this.end = t.at(-1);
+    this.accounts = accounts;
     this.message = message;
     this.success = success;
     this.lengths = given.link.map((one) => one.length);
     this.n = this.lengths.length;
-    this.direction = end >= begin ? 1 : -1;
+    this.direction = this.end >= this.begin ? 1 : -1;
   }
   isRight(t) {
     const rounding = 1e-9 * Math.abs(this.end - this.begin);
@@ -49,11 +51,9 @@ export class LiveRun extends Played {
   constructor(core, given) {
     // The ledger changes no bit of the motion.
     const { scene, run } = simulateDense(core, given, { ledger: true });
-    super(given, given.run.t_start ?? 0, run.t_reached, run);
+    super(given, run);
     this.scene = scene;
     this.run = run;
-    this.accounts = run.accounts;
-    this.steps = run.t;
     const down = new Float64Array(2 * this.n).fill(Math.PI / 2, 0, this.n);
     /** The energy of the chain hanging at rest at the start, J. */
     this.hanging = this.energies(this.begin, down)[1];
@@ -90,10 +90,8 @@ export class Recording extends Played {
   isLive = false;
 
   constructor(recorded, given) {
-    super(given, recorded.t[0], recorded.t.at(-1), recorded);
+    super(given, recorded);
     this.recorded = recorded;
-    this.steps = recorded.t;
-    this.accounts = recorded.accounts;
     this.hanging = recorded.hanging;
   }
   free() {}

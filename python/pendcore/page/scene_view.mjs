@@ -12,9 +12,7 @@ const NEIGHBOUR = { size: 3, alpha: 0.45 }; // pixels; where many tips are, they
 export class SceneView {
   constructor(canvas) {
     this.canvas = canvas;
-    this.typicalForce = 0;
-    this.pixels = 1;
-    this.center = [0, 0];
+    this.typicalForce = 0; // N
     this.fit();
   }
 

@@ -106,13 +106,12 @@ export function listenToPointer(canvas, page) {
     const turns = Math.round((before - angle) / (2 * Math.PI));
     given.start.q[dragged - 1] = angle + 2 * Math.PI * turns;
     page.t = run.begin;
-    page.isMoved = true;
+    page.changed();
   });
   const end = () => {
     held = null;
     if (!page.dragged) return;
     page.dragged = 0;
-    page.isMoved = false;
     page.changed();
     page.settle();
     page.controls.show(page.given);

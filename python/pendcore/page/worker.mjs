@@ -8,8 +8,8 @@ import { grid, simulateDense } from "./simulate.mjs";
 
 /** @type {any} */
 const scope = self;
+let loading = null;
 let core = null;
-let ready = Promise.resolve();
 
 /** Runs a case, gives the run to `use`, and frees it: a loop leaves no time to clean up after it. */
 function withRun(given, others, use) {
@@ -22,6 +22,8 @@ function withRun(given, others, use) {
   }
 }
 
+const OTHER_METHODS = { radau5: "radau5", dop853: "taylor" };
+
 /** Until when a run is right to `limit` rad, by a run of another method at a hundredth of rtol. */
 function horizon({ given, limit }) {
   const begin = given.run.t_start ?? 0;
@@ -29,15 +31,11 @@ function horizon({ given, limit }) {
   const moved = given.start.q.map((angle) => angle * (1 + 2 ** -51));
   const other = { ...given, run, start: { ...given.start, q: moved } };
   const rtol = [given.run.rtol ?? 1e-6].flat().map((one) => Math.max(one / 100, 3e-14));
-  const second = (method) => ({
-    method: method === "radau5" ? "radau5" : method === "dop853" ? "taylor" : "dop853",
-    rtol,
-    atol: rtol.map((one) => one / 1000),
-  });
+  const second = (method) => ({ method, rtol, atol: rtol.map((one) => one / 1000) });
   return withRun(given, {}, (one) => {
     const compare = (another) => {
-      const lengths = [one.t_reached, another.t_reached].map((end) => Math.abs(end - begin));
-      const end = lengths[0] < lengths[1] ? one.t_reached : another.t_reached;
+      const ends = [one.t_reached, another.t_reached];
+      const [end] = ends.sort((a, b) => Math.abs(a - begin) - Math.abs(b - begin));
       const times = grid(begin, end, 4000);
       const [a, b] = [one.at(times), another.at(times)];
       const isWrong = (k) => (_link, i) =>
@@ -46,9 +44,9 @@ function horizon({ given, limit }) {
       return past < 0 ? end : times[Math.max(past - 1, 0)];
     };
     try {
-      return withRun(other, second(one.method), compare);
+      return withRun(other, second(OTHER_METHODS[one.method] ?? "dop853"), compare);
     } catch {
-      return withRun(other, { ...second(one.method), method: "dopri5" }, compare); // without series
+      return withRun(other, second("dopri5"), compare); // without series
     }
   });
 }
@@ -77,12 +75,12 @@ function neighbours({ given, count, spread, rate }) {
 }
 
 /** The least time of a run, ms, and its largest position error as a share of the total length. */
-function measured(given, method, tolerance, times, truth) {
+function measured(given, method, tolerance, truth) {
   const total = given.link.reduce((sum, one) => sum + one.length, 0);
   const others = { method, rtol: tolerance, atol: tolerance, step: null, first_step: null };
   const once = (use) => withRun(given, others, use);
-  const found = once((run) => (run.success ? { rows: run.at(times), size: run.dimension } : null));
-  if (found === null) return null;
+  const rows = once((run) => (run.success ? run.at(truth.times) : null));
+  if (rows === null) return null;
   // A browser's clock has steps of a tenth of a millisecond, so that many runs are timed at once.
   let least = Infinity;
   for (let batch = 0; batch < 3; ++batch) {
@@ -93,10 +91,10 @@ function measured(given, method, tolerance, times, truth) {
   }
   const n = given.link.length;
   let error = 0;
-  for (let k = 0; k < times.length; ++k) {
+  for (let k = 0; k < truth.times.length; ++k) {
     let [x, y] = [0, 0];
     for (let i = 0; i < n; ++i) {
-      const [here, there] = [found.rows[k * found.size + i], truth.rows[k * truth.size + i]];
+      const [here, there] = [rows, truth.rows].map((one) => one[k * truth.size + i]);
       x += given.link[i].length * (Math.cos(here) - Math.cos(there));
       y += given.link[i].length * (Math.sin(here) - Math.sin(there));
       error = Math.max(error, Math.hypot(x, y) / total);
@@ -117,7 +115,7 @@ function cost({ given, methods }, tell) {
   for (const method of methods) {
     for (let digits = 3; digits <= 12; ++digits) {
       try {
-        const one = measured(given, method, 10 ** -digits, truth.times, truth);
+        const one = measured(given, method, 10 ** -digits, truth);
         if (one !== null) found.push(one);
       } catch {
         break; // the method does not take this scene
@@ -133,16 +131,14 @@ const tasks = { horizon, neighbours, cost };
 scope.onmessage = async ({ data }) => {
   try {
     if (data.bytes !== undefined) {
-      ready = load(data.bytes).then((loaded) => {
-        core = loaded;
-      });
+      loading = load(data.bytes);
       return;
     }
-    await ready;
-    const answer = tasks[data.task](data, (partial) => scope.postMessage({ id: data.id, partial }));
+    core = await loading;
+    const answer = tasks[data.task](data, (partial) => scope.postMessage({ partial }));
     const moved = answer?.angles ? [answer.angles.buffer] : [];
-    scope.postMessage({ id: data.id, answer }, moved);
+    scope.postMessage({ answer }, moved);
   } catch (error) {
-    scope.postMessage({ id: data.id, failure: String(error.message ?? error) });
+    scope.postMessage({ failure: String(error.message ?? error) });
   }
 };
