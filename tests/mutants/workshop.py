@@ -124,8 +124,7 @@ class Workshop:
     def unswitched(self) -> Outcome:
         """Run the tests of the core with no mutant switched on."""
         outcome = self.asked_of_ctest()
-        tests = related_first(SOURCE, "")
-        return outcome if outcome.by else self.asked_of_tests(tests, KINDS[:1])
+        return outcome if outcome.by else self.asked_of_tests(without_documents(""), KINDS[:1])
 
     def measured(self) -> Outcome:
         """Run all tests without a mistake; learn which of them run a line of the package."""
@@ -266,8 +265,8 @@ class Place:
             return Outcome("not switched")
         if (outcome := self.workshop.asked_of_ctest(number)).what == "killed":
             return outcome
-        files = [f for f in related_first(SOURCE, mutant.path) if "/documents/" not in f]
-        environment = {switches.VARIABLE: str(number)}  # the sources have all mutants
+        files = without_documents(mutant.path)
+        environment = {switches.VARIABLE: str(number)}
         return self.outcome(*self.run(files[:ASKED_OF_CORE], environment))
 
     def tested(self, mutant: Mutant) -> Outcome:
@@ -311,6 +310,11 @@ class Place:
         print(json.dumps(order), file=self.server.stdin, flush=True)
         code = int(self.server.stdout.readline())
         return code, output.read_text(errors="replace")
+
+
+def without_documents(path: str) -> list[str]:
+    """Return the tests that do not read the sources, which have all mutants in them."""
+    return [file for file in related_first(SOURCE, path) if "/documents/" not in file]
 
 
 def compiles(source: bytes) -> bool:
