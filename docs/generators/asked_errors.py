@@ -24,6 +24,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 import pendcore as pc
 from page_part import rewrite
+from pendcore import _core
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.target_error import search
 from pendcore._accuracy.trials import TrialRun, Trials
@@ -37,13 +38,8 @@ from regular_scenes import Regular, regular  # noqa: E402
 SCENES = range(1000, 1200)
 """Seeds other than those that served to choose the numbers in `accuracy/method_choice.py`."""
 ROUNDS = 30
-OF_PYTHON = ("error", "sensitivities", "on_failure", "progress")
-"""The options that the core does not know."""
-OPTIONS_OF_TRIALS = {
-    name: option.default
-    for name, option in OPTIONS.items()
-    if not (option.chosen_for_error or name in OF_PYTHON)
-}
+KNOWN_TO_CORE = [OPTIONS[told["name"]] for told in _core.run_options()]
+OPTIONS_OF_TRIALS = {one.name: one.default for one in KNOWN_TO_CORE if not one.chosen_for_error}
 Timed: TypeAlias = Callable[..., object]
 Key = TypeVar("Key", bound=Hashable)
 # The table has a row for each of these: its words, its key, and the goal, where there is one: a

@@ -103,6 +103,7 @@ class Derivation(Motion):
         moved = [*zip(s.qd, chain.centers, chain.center_velocities, strict=True)]
         moved.append((s.qd[-1], chain.joints[-1], chain.joint_velocities[-1]))
         kinetic = potential = Integer(0)
+        # The tip comes last, and may have no body.
         for body, (rate, (_, y), velocity) in zip(self.equations.bodies, moved, strict=False):
             kinetic += body.mass * dot(velocity, velocity) / 2 + body.inertia * rate**2 / 2
             potential -= s.gravity * body.mass * y

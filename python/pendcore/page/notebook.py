@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
 from html import escape
+from math import inf
 from typing import Any
 
 _WIDGET = """
@@ -23,8 +23,6 @@ function render({ model, el }) {
 }
 export default { render };
 """
-_INFINITY = re.compile(r'(?<!\\)"(-?)inf"')
-"""A text of JSON that is the word for an infinity: a quote inside a text follows a backslash."""
 
 
 class NotebookPage:
@@ -66,6 +64,15 @@ def widget_of(text: str, height: int) -> Any:
 
         @property
         def case(self) -> dict[str, Any] | None:
-            return json.loads(_INFINITY.sub(r"\1Infinity", self.text)) if self.text else None
+            return _with_infinities(json.loads(self.text)) if self.text else None
 
     return PageWidget(page=text, height=height)
+
+
+def _with_infinities(value: Any) -> Any:
+    """Return the same with numbers in the place of the words for infinities."""
+    if isinstance(value, dict):
+        return {name: _with_infinities(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_with_infinities(one) for one in value]
+    return {"inf": inf, "-inf": -inf}.get(value, value) if isinstance(value, str) else value
