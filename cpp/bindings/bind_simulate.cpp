@@ -34,9 +34,9 @@ std::unique_ptr<Run> simulate_run(const py::object& python_scene, py::handle q0,
     const py::gil_scoped_release released;
     return simulate(scene, start.q0, start.qd0, start.t0, start.t_end, std::move(options));
   };
-  auto run = std::make_unique<Run>(Run{.scene = python_scene,
-                                       .solution = without_lock(),
-                                       .event_functions = std::move(event_functions)});
+  std::unique_ptr<Run> run(new Run{.scene = python_scene,
+                                   .solution = without_lock(),
+                                   .event_functions = std::move(event_functions)});
   monitor.close(*run);
   return run;
 }

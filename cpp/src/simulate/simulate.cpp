@@ -32,7 +32,7 @@ bool has_begun(const IntegratorState& state) { return state.h != 0.0; }
 /// A run of a scene, from its start or from where another one ended, into a solution.
 class SceneRun {
  public:
-  SceneRun(const Scene& scene, Solution& solution, IntegratorState start, Limits limits,
+  SceneRun(const Scene& scene, Solution& solution, IntegratorState&& start, Limits&& limits,
            const std::vector<long long>& passed_events)
       : scene_(scene),
         solution_(solution),
@@ -110,7 +110,8 @@ class SceneRun {
   int choose_first_step() {
     const double t = state_.t.high;
     std::vector<double>& y = state_.y;
-    const std::vector<double> before = y;
+    std::vector<double> before;
+    if (switching_) before = y;
     const bool jumped = switching_ && switching_->begin(t, y.data(), is_forward());
     if (const int bad = bad_component(y); bad >= 0) return bad;
     stepper_->evaluate(t, y.data(), state_.dydt.data());
@@ -260,7 +261,7 @@ Solution resume(const Scene& scene, const Solution& solution, double t_end,
     const long long most = std::numeric_limits<long long>::max() - max_steps;
     limits.max_steps += std::clamp(again, 0LL, most);
   }
-  SceneRun(scene, longer, from, std::move(limits), passed_events).go();
+  SceneRun(scene, longer, IntegratorState(from), std::move(limits), passed_events).go();
   return longer;
 }
 
