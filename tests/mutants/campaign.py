@@ -55,10 +55,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--record", type=Path, help="default: docs/records/mutants/PART.jsonl")
     asked = parser.parse_args(arguments)
     record = asked.record or ROOT / f"docs/records/mutants/{asked.part}.jsonl"
-    told = read(record)
-    wanted = asked.commit or (told[0]["commit"] if told else "HEAD")
+    drawn_from, told = read(record)
+    wanted = asked.commit or drawn_from.get("commit", "HEAD")
     source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
-    if any(source.items() - one.items() for one in told):
+    if drawn_from and drawn_from != source:
         parser.error(f"{record} is of another commit or seed: give another --record")
     wide = max(int(SPARE * asked.count), (asked.only or 0) + 1)
     mutants = list(islice(drawn(asked.part, asked.seed, source["commit"]), wide))
@@ -87,7 +87,7 @@ def main(arguments: list[str] | None = None) -> int:
         outcome = tested(number + 1, mutant)
         seconds = round(time.monotonic() - start, 1)
         found = {"outcome": outcome.what, "by": outcome.by, "seconds": seconds}
-        return {"number": number, **source, **asdict(mutant), **found}
+        return {"number": number, **asdict(mutant), **found}
 
     if asked.only is not None:
         print(json.dumps(tried(asked.only, mutants[asked.only]), indent=1))
@@ -99,6 +99,8 @@ def main(arguments: list[str] | None = None) -> int:
         islice(enumerate(mutants), len(told), None),
     )
     record.parent.mkdir(parents=True, exist_ok=True)
+    if not drawn_from:
+        record.write_text(json.dumps(source) + "\n")
     with tqdm(total=asked.count, initial=counted, unit="mutant", disable=None) as bar:
         for one in in_order(tried, left, AT_ONCE):
             told.append(one)
@@ -142,9 +144,12 @@ def drawn(part: str, seed: int, commit: str) -> Iterator[Mutant]:
         yield dice.choice(by_line[line])
 
 
-def read(record: Path) -> list[dict[str, Any]]:
-    """Return what a campaign has found so far."""
-    return [json.loads(line) for line in record.read_text().splitlines()] if record.exists() else []
+def read(record: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """Return which commit and seed a campaign draws from, and what it has found so far."""
+    if not record.exists():
+        return {}, []
+    source, *told = map(json.loads, record.read_text().splitlines())
+    return source, told
 
 
 def report(told: list[dict[str, Any]]) -> str:
