@@ -193,7 +193,6 @@ void VariationalEquations::choose_laws(double t, const double* y) {
   for (Effect& one : scene_.effects) {
     if (one.is<PushedPivot>()) one = PushedPivot{.start = t};
   }
-  if (equations_.effects) choose_modes(*equations_.effects, t, y, y + n_, true);
   modes_ = modes_at(scene_, t, y, y + n_);
   put_along(t, true);
   along_->refuse_corners();
