@@ -223,24 +223,6 @@ def test_derivatives_are_the_slopes_of_random_runs(seed: int) -> None:
 # Where they are asked for -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "options",
-    [{"store": "end"}, {"t_eval": [1.0, 2.0]}, {"method": "rk4", "step": 1e-3}, {"error": 1e-8},
-     {"method": "radau5"}, {"method": "dop853"}, {"method": "dopri5"}],
-    ids=str,
-)  # fmt: skip
-def test_whatever_is_kept_and_however_it_is_run(options: dict[str, Any]) -> None:
-    names = ["q0[1]", "link[1].length"]
-    exact = extremes(TEXTBOOK, (0, 5), 0.5, 0.0, names)
-    sol = pc.simulate(TEXTBOOK, (0, 5), 0.5, sensitivities=names, **options)
-    before = sol.fingerprint
-    found = sol.extreme_sensitivities()
-    np.testing.assert_allclose(found.values, exact.values, atol=1e-7)
-    np.testing.assert_allclose(found.t, exact.t, atol=1e-6)
-    np.testing.assert_allclose(found.sensitivities, exact.sensitivities, atol=1e-5)
-    assert sol.fingerprint == before
-
-
 @pytest.mark.parametrize("how", [{"t_span": (1, 1)}, {"max_steps": 1, "first_step": 1.0}], ids=str)
 def test_a_run_of_one_state(how: dict[str, Any]) -> None:
     how = {"t_span": (1, 3), **how}
@@ -251,19 +233,3 @@ def test_a_run_of_one_state(how: dict[str, Any]) -> None:
     np.testing.assert_array_equal(found.values, [[0.5, 1, 2, 2]] * 2)
     np.testing.assert_array_equal(found.t, 1.0)
     np.testing.assert_array_equal(found.sensitivities[..., 0], [[0, 1, 0, 0]] * 2)
-
-
-def test_a_run_without_derivatives_has_none_of_extremes() -> None:
-    with pytest.raises(ValueError, match="the run has no sensitivities"):
-        pc.simulate(TEXTBOOK, (0, 1), 0.5).extreme_sensitivities()
-
-
-def test_a_run_that_cannot_be_had_again_has_none_of_extremes() -> None:
-    damping = [0.1]
-    moody = E.User(function=lambda t, q, qd: -damping[0] * qd)
-    scene = TEXTBOOK.replace(effects=[moody])
-    ends = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"], store="end")
-    assert np.isfinite(ends.extreme_sensitivities().sensitivities).all()
-    damping[0] = 0.2
-    with pytest.raises(ValueError, match=r"keeps no dense output: .* takes another course"):
-        ends.extreme_sensitivities()

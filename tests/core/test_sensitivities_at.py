@@ -185,17 +185,43 @@ def test_bad_times_are_refused_in_the_words_of_the_run() -> None:
         assert str(told.value) == str(said.value)
 
 
-def test_runs_without_derivatives_or_of_another_course_have_none() -> None:
-    with pytest.raises(ValueError, match="the run has no sensitivities"):
-        pc.simulate(TEXTBOOK, (0, 1), 0.5).sensitivities_at(0.5)
+@pytest.mark.parametrize("store", ["dense", "end"])
+def test_a_run_that_cannot_be_had_again_has_no_more_than_it_kept(store: str) -> None:
     damping = [0.1]
     moody = E.User(function=lambda t, q, qd: -damping[0] * qd)
     scene = TEXTBOOK.replace(effects=[moody])
-    sol = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"])
+    sol = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"], store=store)
     assert np.isfinite(sol.sensitivities_at(0.5)).all()
+    assert np.isfinite(sol.extreme_sensitivities().sensitivities).all()
     damping[0] = 0.2
     with pytest.raises(ValueError, match="simulated anew it takes another course"):
         sol.sensitivities_at(0.5)
+    if store == "end":
+        with pytest.raises(ValueError, match=r"keeps no dense output: .* takes another course"):
+            sol.extreme_sensitivities()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"store": "end"}, {"t_eval": [1.0, 2.0]}, {"method": "rk4", "step": 1e-3}, {"error": 1e-8},
+     {"method": "radau5"}, {"method": "dop853"}, {"method": "dopri5"},
+     {"max_steps": 9, "on_failure": "ignore", "rtol": 1e-3}],
+    ids=str,
+)  # fmt: skip
+def test_events_and_extremes_have_theirs_whatever_is_kept(options: dict[str, Any]) -> None:
+    how: Any = {"sensitivities": ["gravity", "q0[1]"], "events": [V.LinkAngle(1, np.pi / 2)]}
+    sol = pc.simulate(TEXTBOOK, (0, 5), 0.5, **how, **options)
+    before = sol.fingerprint
+    (of_event,), of_extremes = sol.event_sensitivities(), sol.extreme_sensitivities()
+    assert len(of_event.t) == len(sol.events[0]) > 0
+    np.testing.assert_allclose(of_event.t[:, 0], -sol.events[0].t / (2 * 9.807), rtol=1e-2)
+    if sol.success:
+        best = pc.simulate(TEXTBOOK, (0, 5), 0.5, **how, rtol=1e-13, atol=1e-16)
+        exact = best.extreme_sensitivities()
+        np.testing.assert_allclose(of_extremes.values, exact.values, atol=1e-7)
+        np.testing.assert_allclose(of_extremes.t, exact.t, atol=1e-6)
+        np.testing.assert_allclose(of_extremes.sensitivities, exact.sensitivities, atol=1e-5)
+    assert sol.fingerprint == before
 
 
 @pytest.mark.parametrize("end", [1e-300, -1e-300])

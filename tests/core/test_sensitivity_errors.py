@@ -89,11 +89,6 @@ def test_an_end_at_an_impact_is_no_error() -> None:
     assert sol.sensitivity_errors().max() < 1e-5
 
 
-def test_only_a_run_with_derivatives_has_their_error() -> None:
-    with pytest.raises(ValueError, match="the run has no sensitivities"):
-        pc.simulate(TEXTBOOK, (0, 1), 0.3).sensitivity_errors()
-
-
 @pytest.mark.parametrize("scene", [TEXTBOOK, BUMPY], ids=["smooth", "bumpy"])
 def test_a_torque_is_that_of_a_motor(scene: pc.Scene) -> None:
     names = {"sensitivities": ["torque[1]", "torque[2]"]}
@@ -107,19 +102,6 @@ def test_a_torque_is_that_of_a_motor(scene: pc.Scene) -> None:
         assert other.sensitivities is not None
         found = sol.sensitivities[-1, :, joint - 1]
         np.testing.assert_allclose(found, other.sensitivities[-1, :, 0], rtol=0, atol=1e-11)
-
-
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("torque[3]", r"must be torque\[1\] to torque\[2\]"),
-        ("torque[1]", "a Lock holds this joint"),
-    ],
-)
-def test_a_torque_that_turns_nothing_is_refused(name: str, told: str) -> None:
-    locked = TEXTBOOK.replace(effects=[E.Lock(joint=1)])
-    with pytest.raises(ValueError, match=told):
-        pc.simulate(locked, (0, 1), [0.3, 0.5], sensitivities=[name])
 
 
 def test_chaos_ends_what_derivatives_mean_and_print_says_when() -> None:
