@@ -7,7 +7,7 @@ import time
 import numpy as np
 from cases import Array
 from contenders.contender import Contender, Unsupported
-from contenders.programs import Calls, end_conversations
+from contenders.programs import Calls
 from dense_chain import DenseChain
 from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts
 from machine import circumstances
@@ -60,20 +60,17 @@ def measure(*, quick: bool, rounds: int) -> Record:
     """Measure everything that is here."""
     begin = time.perf_counter()
     lengths = QUICK_LENGTHS if quick else LENGTHS
-    try:
-        others = ("_run", "_kernel", "_derivatives")
-        entrants = [one for one in contenders() if not one.name.endswith(others)]
-        calls, errors, stops = prepare(entrants, lengths)
-        timings = interleave(calls, rounds, BURST_SECONDS, what="chains")
-        rows = [
-            {"contender": who.name, "case": str(n), **timings[key].row("ns", 1e9)}
-            | {"bytes": calls[key].bytes(), "disagreement": errors.get(key)}
-            for who in entrants
-            for n in lengths
-            if (key := (who.name, n)) in timings
-        ]
-    finally:
-        end_conversations()
+    others = ("_run", "_kernel", "_derivatives")
+    entrants = [one for one in contenders() if not one.name.endswith(others)]
+    calls, errors, stops = prepare(entrants, lengths)
+    timings = interleave(calls, rounds, BURST_SECONDS, what="chains")
+    rows = [
+        {"contender": who.name, "case": str(n), **timings[key].row("ns", 1e9)}
+        | {"bytes": calls[key].bytes(), "disagreement": errors.get(key)}
+        for who in entrants
+        for n in lengths
+        if (key := (who.name, n)) in timings
+    ]
     return Record.of(
         {"comparison": "chains", **circumstances(begin, rounds, BURST_SECONDS)},
         {who.name: {**facts(who), "stops": stops.get(who.name)} for who in entrants},

@@ -31,6 +31,7 @@ import pages
 import solves
 import stiff
 from cases import read_case
+from contenders.programs import end_conversations
 from overview_tables import NAMES
 from pages import PAGES
 from record import Record
@@ -68,7 +69,10 @@ def arguments(given: Sequence[str] | None) -> argparse.Namespace:
 def measure(stem: str, *, quick: bool, rounds: int) -> Record:
     if stem in NAMES:
         return solves.measure(read_case(stem), quick=quick, rounds=rounds)
-    return MEASURE[stem](quick=quick, rounds=rounds)
+    try:
+        return MEASURE[stem](quick=quick, rounds=rounds)
+    finally:
+        end_conversations()
 
 
 def measure_hard_cases(names: Sequence[str], path: Path) -> None:

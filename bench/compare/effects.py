@@ -10,7 +10,7 @@ import time
 import count_instructions
 from cases import Array
 from contenders.contender import Contender, Unsupported
-from contenders.programs import Calls, end_conversations
+from contenders.programs import Calls
 from effect_list import BARE, EFFECTS
 from forward_dynamics import chain_scene, contenders, disagreement, facts
 from machine import circumstances
@@ -58,12 +58,9 @@ def prepare(
 def measure(*, quick: bool, rounds: int) -> Record:
     """Measure everything that is here."""
     begin = time.perf_counter()
-    try:
-        entrants = [one for one in contenders() if one.name in SIDES]
-        calls, apart = prepare(entrants)
-        timings = interleave(calls, rounds, BURST_SECONDS, what="effects")
-    finally:
-        end_conversations()
+    entrants = [one for one in contenders() if one.name in SIDES]
+    calls, apart = prepare(entrants)
+    timings = interleave(calls, rounds, BURST_SECONDS, what="effects")
     rows: dict[tuple[str, str], Point] = {}
     for (who, effect), timing in timings.items():
         row = {"contender": who, "case": effect, **timing.row("ns", 1e9)}

@@ -65,8 +65,7 @@ def scene(case: Case) -> pc.Scene:
 
 def starts(n: int, count: int) -> Array:
     """Return the first so many random starts, rad, (count, n)."""
-    drawn: Array = pc.sampling.uniform(-np.pi, np.pi, (count, n), seed=1)
-    return drawn
+    return pc.sampling.uniform(-np.pi, np.pi, (count, n), seed=1)
 
 
 def by_ensemble(method: str, workers: int, case: Case, q0: Array, tolerance: float) -> Solve:

@@ -12,7 +12,7 @@ from typing import Any
 import mpmath  # type: ignore[import-untyped]
 import numpy as np
 from cases import Array
-from contenders.programs import Calls, end_conversations
+from contenders.programs import Calls
 from dense_chain import DenseChain
 from forward_dynamics import ChainScene, chain_scene, contenders, disagreement, facts
 from machine import circumstances
@@ -83,11 +83,8 @@ def measure(*, quick: bool, rounds: int) -> Record:
     """Measure everything that is here."""
     del quick  # it is quick
     begin = time.perf_counter()
-    try:
-        calls, errors, entrants = prepare()
-        timings = interleave(calls, rounds, BURST_SECONDS, what="derivatives")
-    finally:
-        end_conversations()
+    calls, errors, entrants = prepare()
+    timings = interleave(calls, rounds, BURST_SECONDS, what="derivatives")
     return Record.of(
         {"comparison": "derivatives", **circumstances(begin, rounds, BURST_SECONDS)},
         entrants,

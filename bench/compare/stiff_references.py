@@ -43,8 +43,7 @@ def solve(case: Case, method: str, tolerance: float, **more: Any) -> Array:
     )  # fmt: skip
     if not found.success:
         raise RuntimeError(f"{case.name}: {found.message}")
-    states: Array = found.y.T
-    return states
+    return found.y.T
 
 
 def main() -> None:

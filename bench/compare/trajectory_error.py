@@ -7,8 +7,6 @@ masses and lengths; angles run from +x towards +y, y down.
 
 from __future__ import annotations
 
-from typing import cast
-
 import numpy as np
 from cases import Array
 from dense_chain import DenseChain
@@ -17,13 +15,13 @@ from dense_chain import DenseChain
 def joints_and_tip(q: Array, lengths: Array) -> Array:
     """Find the positions (n_t, n, 2) of the far ends of the links."""
     along = np.stack([np.cos(q), np.sin(q)], axis=-1)
-    return cast(Array, np.cumsum(lengths[:, None] * along, axis=-2))
+    return np.cumsum(lengths[:, None] * along, axis=-2)
 
 
 def distances(q: Array, reference: Array, lengths: Array) -> Array:
     """Return the largest distance at each time (n_t,), as a share of the total length."""
     apart = joints_and_tip(q, lengths) - joints_and_tip(reference, lengths)
-    return cast(Array, np.hypot(apart[..., 0], apart[..., 1]).max(axis=-1) / lengths.sum())
+    return np.hypot(apart[..., 0], apart[..., 1]).max(axis=-1) / lengths.sum()
 
 
 def position_error(q: Array, reference: Array, lengths: Array) -> float:
@@ -41,7 +39,7 @@ def energy(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -
     chain = DenseChain(masses=masses, lengths=lengths, gravity=gravity)
     matrices = chain.couplings * np.cos(q[:, :, None] - q[:, None, :])
     kinetic = 0.5 * np.einsum("ti,tij,tj->t", qd, matrices, qd)
-    return cast(Array, kinetic - gravity * (np.sin(q) @ chain.moments))
+    return kinetic - gravity * (np.sin(q) @ chain.moments)
 
 
 def energy_error(q: Array, qd: Array, masses: Array, lengths: Array, gravity: float) -> float:

@@ -144,13 +144,13 @@ def test_what_was_asked_before_does_not_matter() -> None:
     TEXTBOOK.linearize(UPRIGHT, inputs=[1])
     for other in (True, None, 1.0):
         with pytest.raises(TypeError, match=rf"inputs = {other}: must be a joint, .*, or a name"):
-            TEXTBOOK.linearize(UPRIGHT, inputs=[other])  # type: ignore[list-item]
+            TEXTBOOK.linearize(UPRIGHT, inputs=[other])
 
 
 def test_one_text_is_no_list_of_inputs() -> None:
     with pytest.raises(TypeError, match=r"inputs = 'pivot\.x': must be a list"):
         TEXTBOOK.linearize(UPRIGHT, inputs="pivot.x")
     with pytest.raises(TypeError, match="inputs = 1: must be a list"):
-        TEXTBOOK.linearize(UPRIGHT, inputs=1)  # type: ignore[arg-type]
+        TEXTBOOK.linearize(UPRIGHT, inputs=1)
     with pytest.raises(TypeError, match=r"outputs = 'q\[1\]': must be a list"):
         TEXTBOOK.linearize(UPRIGHT, outputs="q[1]")

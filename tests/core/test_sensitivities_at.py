@@ -42,7 +42,6 @@ def test_a_rod_that_turns_freely() -> None:
 def test_kept_times_have_the_bits_that_were_kept(scene: pc.Scene, method: str) -> None:
     step = 1e-2 if method == "rk4" else None
     sol = pc.simulate(scene, (0, 2), 0.5, sensitivities=NAMES, method=method, step=step)
-    assert sol.sensitivities is not None
     before = sol.fingerprint
     after_jumps = np.append(np.diff(sol.t) > 0, True)
     assert after_jumps.all() == (scene is not BOUNCING)
@@ -75,7 +74,6 @@ def test_however_a_run_ended_and_whatever_it_kept(end: str, store: str, tmp_path
     status, scene, span, how = ENDS[end]
     sol = pc.simulate(scene, span, 1.0, sensitivities=NAMES, store=store, on_failure="ignore",
                       **how)  # fmt: skip
-    assert sol.sensitivities is not None
     assert sol.status == status
     there = [sol.t_span[0], sol.t_reached]
     at_start, at_end = sol.sensitivities_at(there)
@@ -99,7 +97,6 @@ def test_between_the_steps_they_are_those_of_a_run_that_keeps_these_times(
         scene = BOUNCING.replace(effects=[STOP.replace(restitution=1.0)])
     times = np.linspace(*span, 37)
     kept = pc.simulate(scene, span, 0.5, sensitivities=NAMES, t_eval=times)
-    assert kept.sensitivities is not None
     sol = pc.simulate(scene, span, 0.5, sensitivities=NAMES)
     np.testing.assert_array_equal(sol.sensitivities_at(times[::-1])[::-1], kept.sensitivities)
     alone = kept.sensitivities_at(times[20])
@@ -121,7 +118,6 @@ def test_short_and_long_steps_of_a_run_have_the_same(
     how: Any = {"t_eval": [1.3, 6.0], "sensitivities": ["q0[1]", "qd0[2]", "gravity"]}
     found = pc.simulate(slow, (0, 6), [0.5, 1.0], method=method, step=step, **how)
     right = pc.simulate(slow, (0, 6), [0.5, 1.0], method="taylor", rtol=1e-14, atol=1e-16, **how)
-    assert found.sensitivities is not None
     largest = np.abs(right.sensitivities).max()
     np.testing.assert_allclose(found.sensitivities, right.sensitivities, 0, within * largest)
 
@@ -151,7 +147,6 @@ def test_after_a_release_they_go_on_from_rest(step: float) -> None:
 
 def test_at_an_impact_they_are_those_after_it() -> None:
     sol = pc.simulate(BOUNCING, (0, 0.5), 0.5, sensitivities=NAMES)
-    assert sol.sensitivities is not None
     (at,) = np.flatnonzero(np.diff(sol.t) == 0)
     found = sol.sensitivities_at(np.nextafter(sol.t[at], [0, sol.t[at], 9]))
     size = np.abs(sol.sensitivities[at]).max()
@@ -185,17 +180,43 @@ def test_bad_times_are_refused_in_the_words_of_the_run() -> None:
         assert str(told.value) == str(said.value)
 
 
-def test_runs_without_derivatives_or_of_another_course_have_none() -> None:
-    with pytest.raises(ValueError, match="the run has no sensitivities"):
-        pc.simulate(TEXTBOOK, (0, 1), 0.5).sensitivities_at(0.5)
+@pytest.mark.parametrize("store", ["dense", "end"])
+def test_a_run_that_cannot_be_had_again_has_no_more_than_it_kept(store: str) -> None:
     damping = [0.1]
     moody = E.User(function=lambda t, q, qd: -damping[0] * qd)
     scene = TEXTBOOK.replace(effects=[moody])
-    sol = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"])
+    sol = pc.simulate(scene, (0, 1), 0.5, sensitivities=["gravity"], store=store)
     assert np.isfinite(sol.sensitivities_at(0.5)).all()
+    assert np.isfinite(sol.extreme_sensitivities().sensitivities).all()
     damping[0] = 0.2
     with pytest.raises(ValueError, match="simulated anew it takes another course"):
         sol.sensitivities_at(0.5)
+    if store == "end":
+        with pytest.raises(ValueError, match=r"keeps no dense output: .* takes another course"):
+            sol.extreme_sensitivities()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"store": "end"}, {"t_eval": [1.0, 2.0]}, {"method": "rk4", "step": 1e-3}, {"error": 1e-8},
+     {"method": "radau5"}, {"method": "dop853"}, {"method": "dopri5"},
+     {"max_steps": 9, "on_failure": "ignore", "rtol": 1e-3}],
+    ids=str,
+)  # fmt: skip
+def test_events_and_extremes_have_theirs_whatever_is_kept(options: dict[str, Any]) -> None:
+    how: Any = {"sensitivities": ["gravity", "q0[1]"], "events": [V.LinkAngle(1, np.pi / 2)]}
+    sol = pc.simulate(TEXTBOOK, (0, 5), 0.5, **how, **options)
+    before = sol.fingerprint
+    (of_event,), of_extremes = sol.event_sensitivities(), sol.extreme_sensitivities()
+    assert len(of_event.t) == len(sol.events[0]) > 0
+    np.testing.assert_allclose(of_event.t[:, 0], -sol.events[0].t / (2 * 9.807), rtol=1e-2)
+    if sol.success:
+        best = pc.simulate(TEXTBOOK, (0, 5), 0.5, **how, rtol=1e-13, atol=1e-16)
+        exact = best.extreme_sensitivities()
+        np.testing.assert_allclose(of_extremes.values, exact.values, atol=1e-7)
+        np.testing.assert_allclose(of_extremes.t, exact.t, atol=1e-6)
+        np.testing.assert_allclose(of_extremes.sensitivities, exact.sensitivities, atol=1e-5)
+    assert sol.fingerprint == before
 
 
 @pytest.mark.parametrize("end", [1e-300, -1e-300])

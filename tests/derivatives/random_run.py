@@ -31,14 +31,11 @@ class RandomRun:
         return scene_of(self.bodies, self.gravity, self.described)
 
 
-def by_pendcore(
-    case: RandomRun, rtol: float, atol: float
-) -> tuple[NDArray[Any], NDArray[Any], str]:
+def by_pendcore(case: RandomRun, **how: Any) -> tuple[NDArray[Any], NDArray[Any], str]:
     """Return the state, its derivative by each name, and what is said of those that are missing."""
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", pc.PendcoreWarning)
-        sol = pc.simulate(case.scene, (0, case.t_end), case.q0, case.qd0, rtol=rtol, atol=atol,
-                          store="end", sensitivities=list(case.changes))  # fmt: skip
-    assert sol.sensitivities is not None
+        sol = pc.simulate(case.scene, (0, case.t_end), case.q0, case.qd0, store="end",
+                          sensitivities=list(case.changes), **how)  # fmt: skip
     why = " ".join(str(one.message) for one in told if "sensitivities" in str(one.message))
     return sol.y[:, -1], sol.sensitivities[-1], why

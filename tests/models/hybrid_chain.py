@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from dense_chain import Array, DenseChain, joints, rates_after_impact, resting
@@ -20,23 +21,27 @@ STAGES = 6  # of the extrapolation: order 12
 TOUCHING = 1e-9  # rad; far above rounding, far below any gap that these runs leave
 
 
+def midpoint_rules(f: Callable[..., Any], t: Any, y: Any, h: Any, stages: int) -> list[Any]:
+    """One step of Gragg's modified midpoint rule, extrapolated to the orders 2, 4, ..., 2 stages.
+
+    The numbers are doubles, complex, or of many digits.
+    """
+    row: list[Any] = []
+    for j in range(1, stages + 1):
+        substeps, rows = 2 * j, row
+        step, before, here = h / substeps, y, y + h / substeps * f(t, y)
+        for k in range(1, substeps):
+            before, here = here, before + 2 * step * f(t + k * step, here)
+        row = [(before + here + step * f(t + h, here)) / 2]
+        for k, earlier in enumerate(rows, 1):
+            row.append(row[-1] + (row[-1] - earlier) * (j - k) ** 2 / (k * (2 * j - k)))
+    return row
+
+
 def extrapolated_step(
     rates: Callable[[float, Array], Array], t: float, y: Array, h: float
 ) -> Array:
-    """Gragg's modified midpoint rule with 2, 4, ..., 12 substeps, extrapolated in their square."""
-    table: list[Array] = []
-    for k in range(STAGES):
-        n = 2 * (k + 1)
-        s = h / n
-        before, now = y, y + s * rates(t, y)
-        for i in range(1, n):
-            before, now = now, before + 2 * s * rates(t + i * s, now)
-        row = [(now + before + s * rates(t + h, now)) / 2]
-        for j in range(1, k + 1):
-            ratio = (n / (2 * (k - j + 1))) ** 2
-            row.append(row[j - 1] + (row[j - 1] - table[j - 1]) / (ratio - 1))
-        table = row
-    return table[-1]
+    return midpoint_rules(rates, t, y, h, STAGES)[-1]
 
 
 def first_below_zero(margin: Callable[[float], float], h: float) -> float:

@@ -237,57 +237,63 @@ def test_an_orbit_so_unstable_that_no_run_returns_is_cut_into_arcs():
     assert again.period == pytest.approx(orbit.period, abs=again.period_error + orbit.period_error)
 
 
-def test_bad_input_and_what_is_not_found_are_told():
-    with pytest.raises(ValueError, match=r"period = -1: must be finite and > 0 \(s\)"):
-        pc.periodic_orbit(TEXTBOOK, 0.5, period=-1)
-    with pytest.raises(
-        RuntimeError, match=r"after 25 corrections it still fails to close by .* rad"
-    ):
-        pc.periodic_orbit(TEXTBOOK, [0.5, 0.2], [3.0, -4.0], 1.1)
-    with pytest.raises(RuntimeError, match=r"still fails to close by .*e-0[89] rad"):
-        pc.periodic_orbit(ROD, [-np.pi / 2 + 1e-5], arcs=1)
-    with pytest.raises(RuntimeError, match="came to the equilibrium"):
-        pc.periodic_orbit(TEXTBOOK, np.pi / 2 + 1e-9, period=1.7)
-    with pytest.raises(
-        ValueError, match=r"energy = -20: must be > -19\.614 \(J\): links that hang"
-    ):
-        pc.periodic_orbit(TEXTBOOK, [0.6, 0.3], energy=-20.0)
-    links = [pc.Link(mass=1.0, length=1.0, center=x) for x in (-2.0, 0.5)]  # 1 stays upright
-    with pytest.warns(pc.PendcoreWarning, match="center"):
-        scene = TEXTBOOK.replace(links=links)
-    with pytest.raises(ValueError, match=r"energy = -15: must be > -14\.7105 \(J\)"):
-        pc.periodic_orbit(scene, [0.6, 0.3], energy=-15.0)
-    push = E.Sinusoid(amplitude=1.0, angular_frequency=3.0)
-    driven = TEXTBOOK.replace(effects=[E.Motor(joint=1, sinusoid=push)])
-    with pytest.raises(ValueError, match="must be a whole number of its periods"):
-        pc.periodic_orbit(driven, 0.5, period=2.0)
-    y = E.Sinusoid(amplitude=0.01, angular_frequency=3.0 * np.sqrt(2))
-    both = driven.replace(effects=[*driven.effects, E.DrivenPivot(y=y)])
-    with pytest.raises(
-        ValueError, match=r"period = None: .* not the same after 1\.48096 s, the per"
-    ):
-        pc.periodic_orbit(both, 0.5)
-    with pytest.raises(ValueError, match="does not keep its energy"):
-        pc.periodic_orbit(driven, 0.5, energy=1.0)
-    spring = TEXTBOOK.replace(effects=[E.TorsionalSpring(joint=1, stiffness=1.0)])
-    with pytest.raises(ValueError, match="a scene that has turned so is another one"):
-        pc.periodic_orbit(spring, 0.5, [9.0, 9.0], 1.0, turns=1)
-    with pytest.raises(ValueError, match=r"qd0: 3 rows: must be as many as q0 has, 2"):
-        pc.periodic_orbit(TEXTBOOK, np.zeros((2, 2)), np.zeros((3, 2)), 1.0)
+with warnings.catch_warnings(action="ignore"):  # link 1 stays upright
+    OFF_CENTRE = [pc.Link(mass=1.0, length=1.0, center=x) for x in (-2.0, 0.5)]
+    UPRIGHT_AT_REST = TEXTBOOK.replace(links=OFF_CENTRE)
+PUSHED = E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=1.0, angular_frequency=3.0))
+SHAKEN = E.DrivenPivot(y=E.Sinusoid(amplitude=0.01, angular_frequency=3.0 * np.sqrt(2)))
+DRIVEN, BOTH = (TEXTBOOK.replace(effects=effects) for effects in ([PUSHED], [PUSHED, SHAKEN]))
+SPRUNG = TEXTBOOK.replace(effects=[E.TorsionalSpring(joint=1, stiffness=1.0)])
+LOCKED = TEXTBOOK.replace(effects=[E.Lock(joint=2)])
+RUBBING = TEXTBOOK.replace(effects=[E.DryJointFriction(joint=1, coulomb=0.5)])
+STOPPED = ROD.replace(effects=[E.JointStop(joint=1, range=(-9, np.pi / 2), restitution=1.0)])
+ZEROS, START = np.zeros((3, 2)), [0.6, 0.3]
+REFUSED = [
+    (TEXTBOOK, [0.5], {"period": -1}, ValueError, r"period = -1: must be finite and > 0 \(s\)"),
+    (TEXTBOOK, [[0.5, 0.2], [3.0, -4.0], 1.1], {}, RuntimeError,
+     "after 25 corrections it still fails to close by .* rad"),
+    (ROD, [[-np.pi / 2 + 1e-5]], {"arcs": 1}, RuntimeError, r"fails to close by .*e-0[89] rad"),
+    (TEXTBOOK, [np.pi / 2 + 1e-9], {"period": 1.7}, RuntimeError, "came to the equilibrium"),
+    (TEXTBOOK, [START], {"energy": -20.0}, ValueError,
+     r"energy = -20: must be > -19\.614 \(J\): links that hang"),
+    (UPRIGHT_AT_REST, [START], {"energy": -15.0}, ValueError,
+     r"energy = -15: must be > -14\.7105 \(J\)"),
+    (DRIVEN, [0.5], {"period": 2.0}, ValueError, "must be a whole number of its periods"),
+    (BOTH, [0.5], {}, ValueError, r"period = None: .* not the same after 1\.48096 s, the per"),
+    (DRIVEN, [0.5], {"energy": 1.0}, ValueError, "does not keep its energy"),
+    (SPRUNG, [0.5, [9.0, 9.0], 1.0], {"turns": 1}, ValueError,
+     "a scene that has turned so is another one"),
+    (TEXTBOOK, [ZEROS[:2], ZEROS, 1.0], {}, ValueError, "qd0: 3 rows: must be as many as q0 has"),
+    (TEXTBOOK, [START], {"period": 2.6, "arcs": 1000}, ValueError, "arcs = 1000: must be 1 to 200"),
+    (TEXTBOOK, [START], {"period": 2.6, "turns": [0, 0, 0]}, ValueError,
+     r"turns: shape \(3,\): must be one number, or \(2,\)"),
+    (LOCKED, [0.5], {"period": 2.5}, ValueError,
+     r"scene: effect 1 \(lock\): the rate of a locked joint"),
+    (STOPPED, [np.pi / 2, -1.0, 0.8], {}, RuntimeError,
+     "has no derivative .*: joint 1 is at its stop, and"),
+    (RUBBING, [START], {"period": 2.6}, RuntimeError,
+     "has no derivative .*: joint 1 is at rest, where its fr"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("scene", "given", "how", "error", "told"), REFUSED)
+def test_bad_input_and_what_is_not_found_are_told(scene, given, how, error, told):
+    with pytest.raises(error, match=told):
+        pc.periodic_orbit(scene, *given, **how)
+
+
+@pytest.mark.parametrize("step", [np.inf, 0.0])
+def test_impossible_steps_of_a_family_are_refused(step):
+    with pytest.raises(ValueError, match=f"step = {step}: must be finite and > 0$"):
+        pc.periodic_orbit(ROD, 0.5).continued("energy", until=-1.0, step=step)
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.6])
 def test_an_orbit_with_an_impact_is_where_long_runs_settle(restitution):
     """In each period, the damper takes exp(-c T/I) from the multipliers' product, the stop e^2."""
-    push = pc.effects.Sinusoid(amplitude=2.0, angular_frequency=4.6)
-    scene = pc.Scene(
-        links=[pc.Link(mass=1.0, length=1.0)],
-        effects=[
-            pc.effects.Motor(joint=1, sinusoid=push),
-            pc.effects.ViscousJoint(joint=1, damping=0.05),
-            pc.effects.JointStop(joint=1, range=(-9, 1.8), restitution=restitution),
-        ],
-    )
+    push = E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=2.0, angular_frequency=4.6))
+    stop = E.JointStop(joint=1, range=(-9, 1.8), restitution=restitution)
+    scene = ROD.replace(effects=[push, E.ViscousJoint(joint=1, damping=0.05), stop])
     orbit = pc.periodic_orbit(scene, 1.4)
     product = restitution**2 * np.exp(-0.05 * 3 * orbit.period)
     assert abs(orbit.multipliers.prod()) == pytest.approx(product, rel=1e-11)
@@ -295,30 +301,3 @@ def test_an_orbit_with_an_impact_is_where_long_runs_settle(restitution):
     settled = pc.simulate(scene, (0, 150 * orbit.period), 1.4, store="end", rtol=1e-12)
     np.testing.assert_allclose(settled.q[-1], orbit.q0, atol=1e-9)
     np.testing.assert_allclose(settled.qd[-1], orbit.qd0, atol=1e-8)
-
-
-def test_what_has_no_derivative_has_no_orbit():
-    locked = pc.Scene.textbook().replace(effects=[pc.effects.Lock(joint=2)])
-    with pytest.raises(ValueError, match=r"scene: effect 1 \(lock\): the rate of a locked joint"):
-        pc.periodic_orbit(locked, 0.5, period=2.5)
-    stop = pc.effects.JointStop(joint=1, range=(-9, np.pi / 2), restitution=1.0)
-    at_its_stop = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)], effects=[stop])
-    with pytest.raises(RuntimeError, match=r"has no derivative .*: joint 1 is at its stop, and"):
-        pc.periodic_orbit(at_its_stop, np.pi / 2, -1.0, period=0.8)
-    rest = pc.Scene.textbook().replace(effects=[E.DryJointFriction(joint=1, coulomb=0.5)])
-    with pytest.raises(
-        RuntimeError, match=r"has no derivative .*: joint 1 is at rest, where its fr"
-    ):
-        pc.periodic_orbit(rest, [0.6, 0.3], period=2.6)
-
-
-def test_impossible_sizes_are_refused():
-    with pytest.raises(ValueError, match="arcs = 1000: must be 1 to 200"):
-        pc.periodic_orbit(pc.Scene.textbook(), [0.6, 0.3], period=2.6, arcs=1000)
-    with pytest.raises(ValueError, match=r"turns: shape \(3,\): must be one number, or \(2,\)"):
-        pc.periodic_orbit(pc.Scene.textbook(), [0.6, 0.3], period=2.6, turns=[0, 0, 0])
-    orbit = pc.periodic_orbit(pc.Scene(links=[pc.Link(mass=1.0, length=1.0)]), 0.5)
-    with pytest.raises(ValueError, match="step = inf: must be finite and > 0"):
-        orbit.continued("energy", until=-1.0, step=float("inf"))
-    with pytest.raises(ValueError, match=r"step = 0\.0: must be finite and > 0$"):
-        orbit.continued("energy", until=-1.0, step=0.0)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from hybrid_chain import midpoint_rules
 
 from reference.rig import Rig
 
@@ -26,22 +27,7 @@ ROUNDING = 2e-15
 
 def midpoint_rule(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Any:
     """One step of Gragg's rule, extrapolated to order 16."""
-    return midpoint_rules(f, t, y, h)[-1]
-
-
-def midpoint_rules(f: Callable[..., Any], t: Any, y: Any, h: Any) -> Sequence[Any]:
-    """One step of the rule, extrapolated to the orders 2, 4, ..., 16."""
-    rows: list[Any] = []
-    for j in range(1, 9):
-        substeps = 2 * j
-        step, before, here = h / substeps, y, y + h / substeps * f(t, y)
-        for k in range(1, substeps):
-            before, here = here, before + 2 * step * f(t + k * step, here)
-        row = [(before + here + step * f(t + h, here)) / 2]
-        for k, earlier in enumerate(rows[-1] if rows else [], 1):
-            row.append(row[-1] + (row[-1] - earlier) * (j - k) ** 2 / (k * (2 * j - k)))
-        rows.append(row)
-    return rows[-1]
+    return midpoint_rules(f, t, y, h, stages=8)[-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,9 +12,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from hybrid_chain import midpoint_rules
 from numpy.typing import NDArray
 
-from reference.complex_runs import midpoint_rules
 from reference.rig import Rig
 
 NEAR = 1e-28
@@ -52,8 +52,7 @@ class Side:
     def slopes(self, t: Any, y: Any, little: float = LITTLE) -> NDArray[Any]:
         """Return the slopes of the bends in time, over a little time ahead or before."""
         beside = y + little * self.rates(t, y)
-        found: NDArray[Any] = (self.bends(t + little, beside) - self.bends(t, y)) / little
-        return found
+        return (self.bends(t + little, beside) - self.bends(t, y)) / little
 
     def after(self, h: Any) -> NDArray[Any]:
         """Return the state after a step."""
@@ -62,7 +61,7 @@ class Side:
     def rules(self, h: Any) -> Any:
         """Return what all rules make of a step, and keep it for the next call."""
         if self.last is None or self.last[0] != h:
-            self.last = h, midpoint_rules(self.rates, self.t, self.y, h)
+            self.last = h, midpoint_rules(self.rates, self.t, self.y, h, stages=8)
         return self.last[1]
 
     def error(self, h: Any) -> float:

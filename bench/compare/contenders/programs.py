@@ -88,8 +88,6 @@ class Conversation:
         conversations.append(self)
 
     def ask(self, request: str) -> str:
-        assert self.process.stdin
-        assert self.process.stdout
         self.process.stdin.write(request + "\n")
         self.process.stdin.flush()
         alarm = threading.Timer(LONGEST_ANSWER, self.process.kill)

@@ -125,15 +125,15 @@ class Upright(Scene):
     def judged(self, motion: Motion) -> Outcome:
         """Find when the distance is first 1 rad, bisected between two of the times."""
 
-        def fallen(t: float) -> bool:
-            return bool(np.abs(motion.at(np.array([t]))[0, :2] - UPRIGHT).max() > 1)
+        def state(t: float) -> Array:
+            return motion.at(np.array([t]))[0]
 
-        after = next(k for k, t in enumerate(motion.t) if fallen(t))
-        low, high = motion.t[after - 1], motion.t[after]
-        for _ in range(80):
-            middle = (low + high) / 2
-            low, high = (low, middle) if fallen(middle) else (middle, high)
-        return self.judge(float(high))
+        after = next(k for k, t in enumerate(motion.t) if self.off(state(t)) > 0)
+        return self.judge(crossing(state, motion.t[after - 1], motion.t[after], self.off))
+
+    def off(self, y: Any) -> float:
+        """Return how far beyond 1 rad from upright the farther link is."""
+        return float(np.abs(np.array(y[:2]) - UPRIGHT).max()) - 1
 
     def mujoco(self, dt: float, integrator: str) -> Outcome:
         motion = self.by_mujoco(dt, integrator)
@@ -145,14 +145,10 @@ class Upright(Scene):
 
     def odeint(self, **how: Any) -> Outcome:
         steps = self.steps_of_odeint(**how)
-
-        def off(y: Any) -> float:
-            return float(np.abs(np.array(y[:2]) - UPRIGHT).max()) - 1
-
         low, high = steps.step()
-        while off(steps.at(high)) < 0 and high < self.span[1]:
+        while self.off(steps.at(high)) < 0 and high < self.span[1]:
             low, high = steps.step()
-        return self.judge(crossing(steps, low, high, off))
+        return self.judge(crossing(steps.at, low, high, self.off))
 
 
 class Separatrix(Scene):

@@ -128,7 +128,7 @@ class Bounces(Scene):
             if steps.at(high)[0] > 0:
                 break
             # The start of a flight is on the stop.
-            t = crossing(steps, low, high, lambda y: 1.0 if y[0] == 0 else y[0])
+            t = crossing(steps.at, low, high, lambda y: 1.0 if y[0] == 0 else y[0])
             speed = -self.restitution * steps.at(t)[1]
             if speed < self.capture:
                 return self.judge(0.0, t)
@@ -216,6 +216,6 @@ class TwoRoots(Scene):
             low, high = steps.step()
             now = past(steps.at(high))
             if before * now < 0:
-                found.append(crossing(steps, low, high, past))
+                found.append(crossing(steps.at, low, high, past))
             before = now
         return self.judge(found, ())

@@ -98,8 +98,7 @@ class Scene:
     def run(self, program: str, **how: Any) -> Outcome:
         own = getattr(self, program, None)
         if own:
-            found: Outcome = own(**how)
-            return found
+            return own(**how)
         runner = getattr(self, f"by_{program}")
         return self.outcome(partial(runner, **self.settings.get(program, {}), **how))
 
@@ -111,10 +110,8 @@ class Scene:
 
         links = [pc.Link(mass=self.mass, length=self.length)] * self.links
         effects = self.effects(pc.effects)
-        start, speeds = (
-            self.zero + self.sign * np.array(self.start),
-            self.sign * np.array(self.speeds),
-        )
+        start = self.zero + self.sign * np.array(self.start)
+        speeds = self.sign * np.array(self.speeds)
         how = {"q0": start, "qd0": speeds, "t_span": self.span, **how}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of a negative coefficient
@@ -263,19 +260,17 @@ def odeint() -> Any:
     """Load the module of Boost.odeint."""
     name = "hard_cases_odeint"
     found = importlib.util.spec_from_file_location(name, find_executable(f"{name}.so"))
-    assert found
-    assert found.loader
     module = importlib.util.module_from_spec(found)
     found.loader.exec_module(module)
     return module
 
 
-def crossing(steps: Any, low: float, high: float, value: Callable[[Any], float]) -> float:
-    """Bisect for the time in the last step at which the sign of `value` of the state changes."""
-    first = value(steps.at(low)) > 0
+def crossing(at: Callable[[float], Any], low: float, high: float, value: Any) -> float:
+    """Bisect between two times for that at which the sign of `value` of the state changes."""
+    first = value(at(low)) > 0
     for _ in range(80):
         middle = 0.5 * (low + high)
-        if (value(steps.at(middle)) > 0) == first:
+        if (value(at(middle)) > 0) == first:
             low = middle
         else:
             high = middle

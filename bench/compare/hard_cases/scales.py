@@ -132,8 +132,7 @@ class Payload(KnownEnd):
         y = np.array([*self.start, *self.speeds])
         for _ in range(self.steps):
             y = extrapolated_step(self.hamilton, 0.0, y, self.span[1] / self.steps)
-        found: list[float] = y[:2].tolist()
-        return found
+        return y[:2].tolist()
 
     def effects(self, fx: Any) -> list[Any]:
         return [fx.Payload(mass=self.ratio)]
@@ -213,8 +212,7 @@ class LetGo(KnownEnd):
         y = np.zeros(2 * self.links)
         for _ in range(self.steps):
             y = extrapolated_step(self.rates_by_forces, 0.0, y, self.span[1] / self.steps)
-        found: list[float] = self.positions(y[: self.links]).tolist()
-        return found
+        return self.positions(y[: self.links]).tolist()
 
     def reference(self) -> dict[str, list[float]]:
         return {"tip": self.end()}
