@@ -118,6 +118,10 @@ BREAKS: dict[str, tuple[pc.Scene, Any, Any, list[str]]] = {
             E.Motor(joint=1, sinusoid=E.Sinusoid(amplitude=2.0, angular_frequency=0.9)),
         ]), (0, 1.6), [0.0, 0.0], ["effect[2].sinusoid.amplitude"],
     ),
+    "a rod that turns and tears the one that friction holds free": (
+        pc.Scene(links=[ROD, ROD], gravity=0.0, effects=[E.DryJointFriction(joint=1, coulomb=1.2)]),
+        (0, 0.6), [0.0, 0.0, 0.0, 2.0], ["q0[2]", "qd0[2]"],
+    ),
     "back in time over the points of a table": (
         pc.Scene(links=[ROD, ROD], effects=[E.Motor(joint=1, table=RAMP)]),
         (1.2, 0.1), [0.5, 0.2, 0.3, 1.0], ["q0[1]", "gravity"],
