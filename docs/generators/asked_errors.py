@@ -17,13 +17,12 @@ import sys
 from collections.abc import Callable, Hashable
 from functools import partial
 from math import inf
-from pathlib import Path
 from time import perf_counter
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import pendcore as pc
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from pendcore import _core
 from pendcore._accuracy.strategies import strategies
 from pendcore._accuracy.target_error import search
@@ -31,9 +30,8 @@ from pendcore._accuracy.trials import TrialRun, Trials
 from pendcore._run.call import Choice, Start, run
 from pendcore.options import OPTIONS, atol_beside
 
-ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
-from regular_scenes import Regular, regular  # noqa: E402
+from regular_scenes import Regular, regular
 
 SCENES = range(1000, 1200)
 """Seeds other than those that served to choose the numbers in `accuracy/method_choice.py`."""
@@ -92,8 +90,8 @@ def times(one: Regular) -> dict[str, float]:
     timed["run"] = again(start, chosen)
     if runs.strategy.verify(runs, chosen) is solution.known_error and runs.strategy.method:
         verified = ["verified"]
-        correction = partial(runs.strategy.correction, start, chosen.scale)
-        timed["verified"] = with_watch(again(start, chosen), correction)
+        rerun, watch = again(start, chosen), partial(runs.strategy.correction, start, chosen.scale)
+        timed["verified"] = lambda: rerun(watch=watch())  # each run has a watch of its own
     else:
         seconds = {f"second {i}": again(start, made) for i, made in enumerate(runs.seconds)}
         timed |= seconds
@@ -125,11 +123,6 @@ def again(start: Start, made: TrialRun) -> Timed:
     return partial(run, start, choice, asked["t_eval"], max_step=asked["max_step"])
 
 
-def with_watch(made: Timed, watch: Callable[[], object]) -> Timed:
-    """Return what makes a run once more, and a new watch that looks on."""
-    return lambda: made(watch=watch())
-
-
 def least_times(timed: dict[Key, Timed], rounds: int) -> dict[Key, float]:
     """Return the least time of each, s; they take turns."""
     least = dict.fromkeys(timed, inf)
@@ -143,10 +136,7 @@ def least_times(timed: dict[Key, Timed], rounds: int) -> dict[Key, float]:
 
 def table(found: list[dict[str, Any]]) -> str:
     """Return the table of the page."""
-    lines = [
-        "| of 200 scenes | least | median | 90 % | 97 % | largest | goal | kept by |",
-        "|---|--:|--:|--:|--:|--:|--:|--:|",
-    ]
+    rows = []
     for what, key, goal in ROWS:
         numbers = [one[key] for one in found]
         cells = [f"{x:.2f}" for x in np.percentile(numbers, [0, 50, 90, 97, 100])]
@@ -156,8 +146,9 @@ def table(found: list[dict[str, Any]]) -> str:
             most, of_all = goal
             kept = np.mean([x <= most for x in numbers])
             cells += [f"{most:g} in {of_all:.0%}", f"{kept:.1%}"]
-        lines.append(f"| {what} | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        rows.append([what, *cells])
+    heads = ["of 200 scenes", "least", "median", "90 %", "97 %", "largest", "goal", "kept by"]
+    return table_of(heads, rows)
 
 
 def main() -> None:

@@ -9,7 +9,6 @@ docs/background/book_speed.md and the figure docs/figures/book_speed.png.
 from __future__ import annotations
 
 import json
-import stat
 import subprocess
 import sys
 import time
@@ -21,19 +20,16 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pendcore as pc
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from pendcore.plotting import LIGHT, new_axes
 
-ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "bench/compare"))
-from contenders.contender import PythonRun  # noqa: E402
-from contenders.programs import Conversation  # noqa: E402
-from machine import circumstances  # noqa: E402
-from measure import Timing, interleave  # noqa: E402
+from contenders.contender import PythonRun
+from contenders.programs import Conversation
+from machine import circumstances
+from measure import Timing, interleave
 
-Floats = npt.NDArray[np.float64]
 BOOK, START, SPAN = pc.Scene.textbook(), (np.pi / 4, np.pi / 3), (0.0, 5.0)
 BY_CORE = partial(pc.simulate, BOOK, SPAN, START)
 TOLERANCES = {f"1e-{k}": {"rtol": 10.0**-k, "atol": 10.0 ** (-k - 3)} for k in (3, 6, 9)}
@@ -73,10 +69,7 @@ def begin_octave(folder: Path) -> Conversation:
     (folder / "RR.m").write_text(written_out(book))
     (folder / "shared.m").write_text(book.to_octave("shared"))
     (folder / "g.m").write_text(book.to_octave_inline())
-    program = folder / "turns"
-    program.write_text((ROOT / "docs/generators/book_speed.m").read_text())
-    program.chmod(program.stat().st_mode | stat.S_IXUSR)
-    return Conversation(program, {"BOOK_SPEED": str(folder)})
+    return Conversation(ROOT / "docs/generators/book_speed.m", {"BOOK_SPEED": str(folder)})
 
 
 def begin_cpp(folder: Path) -> Conversation:
@@ -237,25 +230,23 @@ def of_times(ratio: float) -> str:
 
 def solves_table(found: dict[str, Any]) -> str:
     """Return the table of whole solves."""
-    lines = [
-        "| tolerance | way | least time | median | faster than inline | calls of f | error, rad |",
-        "|---|---|--:|--:|--:|--:|--:|",
-    ]
+    rows = []
     for named in TOLERANCES:
-        rows = [row for row in found["solves"] if row["tolerance"] == named]
-        inline = next(row["least"] for row in rows if row["way"] == "inline")
-        for row in rows:
+        solves = [one for one in found["solves"] if one["tolerance"] == named]
+        inline = next(one["least"] for one in solves if one["way"] == "inline")
+        for one in solves:
             cells = [
                 named,
-                WAYS[row["way"]],
-                in_words(row["least"]),
-                in_words(row["median"]),
-                of_times(inline / row["least"]),
-                f"{row['right_hand_sides']:,}",
-                f"{row['error']:.0e}",
+                WAYS[one["way"]],
+                in_words(one["least"]),
+                in_words(one["median"]),
+                of_times(inline / one["least"]),
+                f"{one['right_hand_sides']:,}",
+                f"{one['error']:.0e}",
             ]
-            lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+            rows.append(cells)
+    heads = ["tolerance", "way", "least time", "median", "faster than inline", "calls of f"]
+    return table_of([*heads, "error, rad"], rows, left=2)
 
 
 def calls_table(found: dict[str, Any]) -> str:
@@ -265,13 +256,13 @@ def calls_table(found: dict[str, Any]) -> str:
     names["cpp"] = "C++ header from SymPy, in C++"
     names |= {"numpy": "NumPy from SymPy", "core": "pendcore from Python, `scene.accelerations`"}
     heads = [f"{count:,} state{'s' * (count > 1)}" for count in STATES]
-    lines = [f"| time of a state, in a call of | {' | '.join(heads)} |", "|---" + "|--:" * 3 + "|"]
+    rows = []
     for way, name in names.items():
         cells = [
             in_words(known[way, count] / count) if (way, count) in known else "" for count in STATES
         ]
-        lines.append(f"| {name} | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        rows.append([name, *cells])
+    return table_of(["time of a state, in a call of", *heads], rows)
 
 
 def once_table(found: dict[str, Any]) -> str:
@@ -281,9 +272,8 @@ def once_table(found: dict[str, Any]) -> str:
         "solve": "start Python, import pendcore, solve the case",
         "derive": "start Python, derive the case with SymPy, write RR.m",
     }
-    lines = ["| once | least time |", "|---|--:|"]
-    lines += [f"| {words} | {in_words(found['once'][name])} |" for name, words in names.items()]
-    return "\n".join(lines) + "\n"
+    rows = [(words, in_words(found["once"][name])) for name, words in names.items()]
+    return table_of(["once", "least time"], rows)
 
 
 TABLES = {"solves": solves_table, "calls": calls_table, "once": once_table}

@@ -14,18 +14,16 @@ import json
 import sys
 from functools import partial
 from math import inf
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pendcore as pc
 from asked_errors import least_times
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from tqdm import tqdm
 
-ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
-from regular_scenes import EXACT, REGULAR, Regular, growth, scene_and_start  # noqa: E402
+from regular_scenes import EXACT, REGULAR, Regular, growth, scene_and_start
 
 SCENES = range(1200, 1400)
 """Seeds other than those from which the bounds of accuracy/method_choice.py were measured."""
@@ -101,25 +99,22 @@ def of_chain(n: int) -> dict[str, Any]:
 
 
 def table_of_scenes(found: list[dict[str, Any]]) -> str:
-    lines = [
-        "| of 200 scenes | error, median | 97 % | all | time, median | 97 % |",
-        "|---|--:|--:|--:|--:|--:|",
-    ]
+    rows = []
     for name in WAYS:
         errors = np.percentile([one["error"][name] for one in found], [50, 97, 100])
         times = np.percentile([one["time"][name] for one in found], [50, 97])
-        cells = [*(f"{x:.0e}" for x in errors), *(f"{x:.2f}" for x in times)]
-        lines.append(f"| {name} | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        rows.append([name, *(f"{x:.0e}" for x in errors), *(f"{x:.2f}" for x in times)])
+    heads = ["of 200 scenes", "error, median", "97 %", "all", "time, median", "97 %"]
+    return table_of(heads, rows)
 
 
 def table_of_chains(found: list[dict[str, Any]]) -> str:
     heads = [f"{method}, {e:.0e}" for method in ("taylor", "dopri5") for e in ERRORS]
-    lines = [f"| links | {' | '.join(heads)} |", "|--:|" + "--:|" * len(heads)]
+    rows = []
     for one in found:
         cells = [f"{x:.2f}" for method in one["time"].values() for x in method]
-        lines.append(f"| {one['links']} | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        rows.append([str(one["links"]), *cells])
+    return table_of(["links", *heads], rows, left=0)
 
 
 def main() -> None:

@@ -11,6 +11,7 @@ from pendcore.plotting import LIGHT, grid, legend_above, new_axes, sheet
 
 plt.style.use(sheet())
 
+START = [np.pi / 4, np.pi / 3]
 RUNS = [
     ("dopri5", 1e-6, "-", LIGHT.lost),
     ("dopri5", 1e-9, "-", LIGHT.quiet),
@@ -24,15 +25,7 @@ def draw() -> plt.Figure:
     scene = pc.Scene.textbook()
     (axes,) = new_axes((7, 4.2))
     for method, rtol, style, color in RUNS:
-        sol = pc.simulate(
-            scene,
-            q0=[np.pi / 4, np.pi / 3],
-            qd0=0,
-            t_span=(0, 5),
-            method=method,
-            rtol=rtol,
-            atol=rtol,
-        )
+        sol = pc.simulate(scene, (0, 5), START, method=method, rtol=rtol, atol=rtol)
         found = sol.defect()
         edges = np.append(found.t, sol.t[-1])
         label = f"{method}, rtol = atol = {rtol:.0e}"

@@ -23,27 +23,26 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from pendcore.cli.map.forbidden import is_forbidden
 from pendcore.cost.measurement import processor
+from pendcore.messages import Floats
 from pendcore.plotting import Axis, Shown, draw_map, new_axes
 from scipy.interpolate import CubicHermiteSpline
 
-ROOT = Path(__file__).parents[2]
-sys.path += [str(ROOT / "tests")]
+sys.path.append(str(ROOT / "tests"))
 
-from reference.taylor_series import RodChain, motion  # noqa: E402
+from reference.taylor_series import RodChain, motion
 
 BOOK = pc.Scene.textbook()
 UP = -np.pi / 2
 EVENTS = {f"link {i}": pc.events.LinkAngle(i, UP, every_turn=True, terminal=True) for i in (1, 2)}
 UNIT = float(np.sqrt(1.0 / BOOK.gravity))  # sqrt(l/g), s
+T_END = 1e4 * UNIT
 CHECKED = 1000
 GRID = 0.02  # s, of the times at which turns are counted in many digits
 CLOSE = 0.1  # rad, between upright and a reversal that is computed in many digits as well
 LONGEST = 30.0  # s, of a motion in many digits
-
-Floats = NDArray[np.float64]
 
 
 def angles(count: int) -> Floats:
@@ -70,16 +69,16 @@ def flips(found: pc.Ensemble) -> Floats:
     return np.fmin(*(found[name] for name in EVENTS))
 
 
-def computed(count: int, t_end: float, workers: int | None) -> dict[str, Any]:
+def computed(count: int) -> dict[str, Any]:
     """Compute the map, and a second time, and which pixels agree."""
     q0 = np.pi / 2 + half(count)
     forbidden = np.all([is_forbidden(BOOK, q0, 0.0, one) for one in EVENTS.values()], axis=0)
     begin = perf_counter()
     keep = {name: pc.reducers.FirstEvent(one) for name, one in EVENTS.items()}
-    asked = {"t_span": (0, t_end), "keep": keep, "max_steps": 10**9, "workers": workers}
-    found = pc.ensemble(BOOK, q0=q0[~forbidden], **asked, progress=True)
+    asked = {"t_span": (0, T_END), "keep": keep, "max_steps": 10**9, "progress": True}
+    found = pc.ensemble(BOOK, q0=q0[~forbidden], **asked)
     seconds = perf_counter() - begin
-    other = found.second(workers=workers, progress=True)
+    other = found.second(progress=True)
     both = perf_counter() - begin
     one, two = flips(found), flips(other)
     agree = (np.abs(one - two) <= 0.01 * np.fmax(one, two)) | (np.isnan(one) & np.isnan(two))
@@ -184,12 +183,9 @@ def draw(found: dict[str, Any], path: Path) -> None:
 
 def page(record: dict[str, Any]) -> str:
     count, check = record["pixels along an axis"], record["check in many digits"]
-    rows = "\n".join(
-        f"| {t:,.0f} | {flipped:.2%} | {share:.2%} |"
-        for t, flipped, share in zip(
-            record["times"], record["turned over"], record["unresolved"], strict=True
-        )
-    )
+    columns = record["times"], record["turned over"], record["unresolved"]
+    rows = [(f"{t:,.0f}", f"{x:.2%}", f"{lost:.2%}") for t, x, lost in zip(*columns, strict=True)]
+    heads = ["map to t, sqrt(l/g)", "turned over by then", "not resolved"]
     size = f"{count} x {count} pixels"
     end = f"10^{np.log10(record['t_end'] / UNIT):.0f} sqrt(l/g) = {record['t_end']:.0f} s"
     times = f"{record['seconds']:.0f} s on {record['processors']} processors ({record['machine']})"
@@ -199,10 +195,7 @@ def page(record: dict[str, Any]) -> str:
 with the second ensemble {both}. At {record["forbidden"]:.1%} of the pixels energy forbids that
 a link turns over.
 
-| map to t, sqrt(l/g) | turned over by then | not resolved |
-|---|---|---|
-{rows}
-
+{table_of(heads, rows, left=3)}
 {check["pixels"]} resolved pixels, drawn at random, were computed in many digits until they turned
 over, or for at most {check["longest"]:.0f} s: {check["that turn over"]} turned over by then.
 **{check["wrong"]} of them were wrong.**
@@ -213,17 +206,13 @@ over, or for at most {check["longest"]:.0f} s: {check["that turn over"]} turned 
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--count", type=int, default=1024)
-    parser.add_argument("--t-end", type=float, default=1e4, help="in sqrt(l/g)")
-    parser.add_argument("--workers", type=int)
     parser.add_argument("--checked", type=int, default=CHECKED)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs")
     args = parser.parse_args()
-    t_end = args.t_end * UNIT
-    found = computed(args.count, t_end, args.workers)
-    times = 10.0 ** np.arange(0.5, np.log10(args.t_end) + 0.01, 0.5)
+    found = computed(args.count)
+    times = 10.0 ** np.arange(0.5, 4.01, 0.5)
     record = {
         "pixels along an axis": args.count,
-        "t_end": t_end,
+        "t_end": T_END,
         "machine": processor(),
         "processors": os.cpu_count(),
         **{name: x for name, x in found.items() if not isinstance(x, np.ndarray)},
@@ -233,13 +222,9 @@ def main() -> None:
         "unresolved": unresolved(found, times * UNIT),
         "check in many digits": checked(found, args.count, args.checked),
     }
-    (args.out / "figures").mkdir(parents=True, exist_ok=True)
-    (args.out / "records").mkdir(parents=True, exist_ok=True)
-    draw(found, args.out / "figures/flip_map.png")
-    (args.out / "records/flip_map.json").write_text(json.dumps(record, indent=1) + "\n")
-    path = args.out / "background/flip_map.md"
-    if path.exists():
-        rewrite(path, flip_map=page(record))
+    draw(found, ROOT / "docs/figures/flip_map.png")
+    (ROOT / "docs/records/flip_map.json").write_text(json.dumps(record, indent=1) + "\n")
+    rewrite(ROOT / "docs/background/flip_map.md", flip_map=page(record))
     print(page(record))
 
 

@@ -20,14 +20,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 from numpy.typing import NDArray
-from page_part import rewrite
+from page_part import ROOT, rewrite
+from pendcore.cost.horizon import METHODS
 from pendcore.plotting import LIGHT, grid, legend_above, new_axes
 
-ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "tests"), str(ROOT / "tests/models")]
 
-import chaotic_starts as record  # noqa: E402
-from reference.taylor_series import RodChain, motion  # noqa: E402
+import chaotic_starts as record
+from reference.taylor_series import RodChain, motion
 
 BOOK = pc.Scene.textbook()
 START, SPAN = [-1.2, -0.6], (0.0, 14.0)
@@ -35,7 +35,6 @@ LIMIT = 0.1
 RTOLS = [1e-4, 1e-6, 1e-9, 1e-12]
 FIVE_RTOLS = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 STUDENT = 3.5  # of Student's t with 49 degrees of freedom, 99.9 % lie within +- this
-METHODS = [m["name"] for m in pc._core.methods() if m["name"] in ("dopri5", "dop853", "taylor")]
 FIGURES = ROOT / "docs/figures"
 
 
@@ -70,15 +69,8 @@ def slopes() -> dict[str, dict[str, list[float]]]:
     """
     found: dict[str, dict[str, list[float]]] = {}
     for case in record.chaotic_starts():
-        work = pc.horizon_work(
-            case.scene,
-            q0=case.q0,
-            qd0=case.qd0,
-            t_span=(0, 30),
-            methods=METHODS,
-            rtols=FIVE_RTOLS,
-            progress=False,
-        )
+        how: dict[str, Any] = {"methods": METHODS, "rtols": FIVE_RTOLS, "progress": False}
+        work = pc.horizon_work(case.scene, (0, 30), case.q0, case.qd0, **how)
         assert work.growth is not None
         t, grown = work.growth.t, np.maximum.accumulate(work.growth.growth[:, 0])
         for method in work.methods:

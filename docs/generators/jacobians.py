@@ -12,18 +12,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import control
 import mujoco
 import numpy as np
 import pendcore as pc
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 
-ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "bench" / "compare"))
-import mujoco_models  # noqa: E402
+import mujoco_models
 
 STATES, STEPS = 100, (0.01, 0.002)
 TO_ABSOLUTE = np.kron(np.eye(2), np.tri(2))
@@ -118,10 +116,7 @@ def states(rng: np.random.Generator, *, moving: bool) -> list[tuple[Any, Any, An
 
 def main() -> None:
     rng = np.random.default_rng(1)
-    lines = [
-        "| Jacobian of a step | moving, 10 ms | 2 ms | at rest, 10 ms | 2 ms |\n",
-        "|---|--:|--:|--:|--:|\n",
-    ]
+    rows = []
     kinds = [states(rng, moving=moving) for moving in (True, False)]
     for name, way in WAYS.items():
         cells = []
@@ -132,9 +127,10 @@ def main() -> None:
                     for state in drawn
                     for right in [of_the_motion(dt, *state)]
                 ]
-                cells.append(f"{np.median(errors):.0e} ({max(errors):.0e})")
-        lines.append(f"| {name} | {' | '.join(cells)} |\n".replace("e-0", "e-"))
-    rewrite(ROOT / "docs" / "how_to" / "linearize.md", jacobians="".join(lines))
+                cells.append(f"{np.median(errors):.0e} ({max(errors):.0e})".replace("e-0", "e-"))
+        rows.append([name, *cells])
+    heads = ["Jacobian of a step", "moving, 10 ms", "2 ms", "at rest, 10 ms", "2 ms"]
+    rewrite(ROOT / "docs/how_to/linearize.md", jacobians=table_of(heads, rows))
 
 
 if __name__ == "__main__":

@@ -20,10 +20,9 @@ import numpy as np
 import numpy.typing as npt
 import pendcore as pc
 from mpmath import cos, mp, mpf, sin
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from pendcore.plotting import LIGHT, grid, new_axes, sheet
 
-ROOT = Path(__file__).parents[2]
 BOOK = pc.Scene.textbook()
 STEP = 5e-4
 FINE = 1e-4
@@ -120,34 +119,31 @@ def record(steps: int, starts: int) -> dict[str, Any]:
 
 def tables(found: dict[str, Any]) -> str:
     """Return the tables of the page."""
-    lines = ["| | rounded | compensated |", "|---|--:|--:|"]
-
-    def row(what: str, *keys: str, form: str = ".1e") -> None:
-        numbers = []
-        for name in ("rounded", "compensated"):
-            value = found[name]
-            for key in keys:
-                value = value[key]
-            numbers.append(f"{value:{form}}")
-        lines.append(f"| {what} | {numbers[0]} | {numbers[1]} |")
-
-    row("steps of 5e-4 s", "drift", "steps", form=",")
-    row("largest drift, share of the total energy", "drift", "of_total")
-    row("largest drift, share of the largest kinetic energy", "drift", "of_kinetic")
-    lines += ["", f"| rms drift of {found['starts']} starts, J, after steps of 1e-4 s | rounded |"]
-    lines[-1] += " compensated |"
-    lines.append("|--:|--:|--:|")
-    for i, count in enumerate(found["steps"]):
-        both = (found[name]["rms"][i] for name in ("rounded", "compensated"))
-        lines.append(f"| {count:,} | {' | '.join(f'{x:.1e}' for x in both)} |")
-    row("exponent of the growth", "slope", form=".2f")
+    both = found["rounded"], found["compensated"]
+    steps, of_total, of_kinetic = (
+        " | ".join(f"{one['drift'][key]:{form}}" for one in both)
+        for key, form in (("steps", ","), ("of_total", ".1e"), ("of_kinetic", ".1e"))
+    )
+    rows = [
+        (f"{count:,}", *(f"{one['rms'][i]:.1e}" for one in both))
+        for i, count in enumerate(found["steps"])
+    ]
+    rows.append(("exponent of the growth", *(f"{one['slope']:.2f}" for one in both)))
+    walked = f"rms drift of {found['starts']} starts, J, after steps of 1e-4 s"
     kept = found["time"]
     off = kept["two_doubles"]
     time = f"off by {off:.0e} s" if off else "exact to the last bit"
-    lines += ["", f"After {kept['steps']:,} fixed steps of 5e-4 s the time is"]
-    lines[-1] += f" {time}; one double would be off by"
-    lines.append(f"{kept['one_double']:.0e} s.")
-    return "\n".join(lines) + "\n"
+    return f"""\
+| | rounded | compensated |
+|---|--:|--:|
+| steps of 5e-4 s | {steps} |
+| largest drift, share of the total energy | {of_total} |
+| largest drift, share of the largest kinetic energy | {of_kinetic} |
+
+{table_of([walked, "rounded", "compensated"], rows, left=0)}
+After {kept["steps"]:,} fixed steps of 5e-4 s the time is {time}; one double would be off by
+{kept["one_double"]:.0e} s.
+"""
 
 
 def figure(found: dict[str, Any], path: Path) -> None:

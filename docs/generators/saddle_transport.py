@@ -10,17 +10,15 @@ Pendulum).
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 from pendcore.plotting import LIGHT, grid, sheet
 
-ROOT = Path(__file__).parents[2]
 DOWN = np.pi / 2
 SCENE = pc.Scene(
     links=[
@@ -51,10 +49,7 @@ def of_whole_turns(name: str) -> pc.PeriodicOrbit:
 
 def rows_of_orbits(orbits: dict[str, pc.PeriodicOrbit]) -> str:
     """A table of periods, multipliers, and rates where a link hangs, beside theirs."""
-    lines = [
-        "| orbit at 0.2 J | period, s | largest multiplier | rates where a link hangs, rad/s | "
-        "theirs |\n|---|--:|--:|--:|--:|\n"
-    ]
+    rows = []
     for name, orbit in orbits.items():
         link, theirs = THEIRS[name]
         run = orbit.solution(events=[HANGS[link - 1]], rtol=1e-13, atol=1e-16)
@@ -64,19 +59,20 @@ def rows_of_orbits(orbits: dict[str, pc.PeriodicOrbit]) -> str:
         grown = f"{largest.real:,.3f}" if abs(largest) > 1 + 1e-9 else "1 (stable)"
         ours, others = (", ".join(f"{x:.7f}" for x in y) for y in (rates, theirs))
         bar = f"{orbit.period:.12f} ± {max(orbit.period_error, 1e-14):.0e}"
-        lines.append(f"| {name} | {bar} | {grown} | {ours} | {others} |\n")
-    return "".join(lines)
+        rows.append([name, bar, grown, ours, others])
+    heads = ["orbit at 0.2 J", "period, s", "largest multiplier", "rates where a link hangs, rad/s"]
+    return table_of([*heads, "theirs"], rows)
 
 
 def rows_of_connections(found: dict[str, tuple[int, tuple[pc.Connection, ...]]]) -> str:
-    lines = ["| connection | θ, rad | rate of it, rad/s | error, rad | angle, rad |\n"]
-    lines.append("|---|--:|--:|--:|--:|\n")
+    rows = []
     for name, (link, connections) in found.items():
         for x in sorted(connections, key=lambda x: (round(abs(wrapped(x.q)[link]), 6), x.qd[link])):
             angle = 0.0 + round(float(wrapped(x.q)[link]), 8)
-            told = f"{angle:.8f} | {x.qd[link]:.7f} | {x.error:.0e} | {x.angle:.3f}"
-            lines.append(f"| {name} | {told} |\n")
-    return "".join(lines)
+            told = f"{angle:.8f}", f"{x.qd[link]:.7f}", f"{x.error:.0e}", f"{x.angle:.3f}"
+            rows.append([name, *told])
+    heads = ["connection", "θ, rad", "rate of it, rad/s", "error, rad", "angle, rad"]
+    return table_of(heads, rows)
 
 
 def wrapped(q: Any) -> Any:

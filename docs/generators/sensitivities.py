@@ -13,16 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import heyoka as hy
 import numpy as np
 import pendcore as pc
 from asked_errors import least_times
-from page_part import rewrite
+from page_part import ROOT, rewrite, table_of
 
-ROOT = Path(__file__).parents[2]
 Q0, QD0, TIMES, TURNS = [0.5, 1.0], [0.0, 0.0], np.linspace(0.0, 5.0, 51), 15
 STARTS = ["q0[1]", "q0[2]", "qd0[1]", "qd0[2]"]
 MORE = ["gravity", "link[1].mass", "link[2].mass", "link[1].inertia", "link[2].inertia",
@@ -108,8 +106,7 @@ def times(runs: list[Run]) -> list[float]:
 
 def by_method() -> str:
     """How many runs alone a run with names takes."""
-    lines = ["| runs alone by the same method | names | `rtol` 10⁻⁶ | 10⁻⁹ | 10⁻¹² |\n",
-             "|---|--:|--:|--:|--:|\n"]  # fmt: skip
+    rows = []
     for method in ("taylor", "dop853", "dopri5"):
         took = np.empty((3, 3))
         for k, rtol in enumerate((1e-6, 1e-9, 1e-12)):
@@ -118,17 +115,13 @@ def by_method() -> str:
             by_names = [partial(run, sensitivities=names) for names in (STARTS, STARTS + MORE)]
             took[:, k] = times([run, *by_names])
         for names, of_run in zip((4, 10), took[1:] / took[0], strict=True):
-            cells = " | ".join(f"{x:.1f}" for x in of_run)
-            lines.append(f"| {f'`{method}`' if names == 4 else ''} | {names} | {cells} |\n")
-    return "".join(lines)
+            cells = [f"{x:.1f}" for x in of_run]
+            rows.append([f"`{method}`" if names == 4 else "", str(names), *cells])
+    heads = ["runs alone by the same method", "names", "`rtol` 10⁻⁶", "10⁻⁹", "10⁻¹²"]
+    return table_of(heads, rows)
 
 
 def beside_heyoka() -> str:
-    lines = [
-        "| derivatives of two rods, 5 s, at 51 times | 4 names, 10⁻⁸ | 10⁻¹¹ | 10 names, 10⁻⁸ |"
-        " 10⁻¹¹ |\n",
-        "|---|--:|--:|--:|--:|\n",
-    ]
     ways = {"pendcore": of_pendcore, "heyoka, `var_ode_sys`": of_heyoka,
             "central differences of `pc.simulate`": of_differences}  # fmt: skip
     cells: dict[str, list[str]] = {name: [] for name in ways}
@@ -144,8 +137,9 @@ def beside_heyoka() -> str:
             for name, (_, off), spent in zip(ways, runs, took, strict=True):
                 missed = f", {off:.0e} off" if off > error else ""
                 cells[name].append(f"{spent / of_run:.0f} runs{missed}".replace("e-0", "e-"))
-    lines += [f"| {name} | {' | '.join(of_it)} |\n" for name, of_it in cells.items()]
-    return "".join(lines)
+    heads = ["derivatives of two rods, 5 s, at 51 times"]
+    heads += ["4 names, 10⁻⁸", "10⁻¹¹", "10 names, 10⁻⁸", "10⁻¹¹"]
+    return table_of(heads, [(name, *of_it) for name, of_it in cells.items()])
 
 
 def main() -> None:

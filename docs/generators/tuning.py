@@ -9,34 +9,20 @@ docs/background/accuracy_cost.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import asked_errors
 import numpy as np
 import pendcore as pc
-from page_part import rewrite
+from page_part import ROOT, rewrite
 from pendcore._accuracy import strategies, tuning
 
-ROOT = Path(__file__).parents[2]
 RUNS_DO_NOT_DEPEND_ON = {"HOPELESS", "LATE", "LARGE_ANGLE", "MOST_SEARCHES"}
 HEAD = """\
 | changed | within 3.5 times | within 6 times | median | largest | largest true / told error |
 |---|--:|--:|--:|--:|--:|
 """
-
-
-@contextmanager
-def changed(name: str, value: Any) -> Iterator[None]:
-    """Give a number another value; those who count by it look it up."""
-    before = getattr(tuning, name)
-    setattr(tuning, name, value)
-    try:
-        yield
-    finally:
-        setattr(tuning, name, before)
 
 
 def outcome(scene: Any) -> dict[str, Any]:
@@ -68,7 +54,7 @@ def table(scenes: list[Any]) -> str:
         rows = ""
         for factor in (0.5, 2.0):
             other = type(value)(value * factor)
-            with changed(name, other):
+            with mock.patch.object(tuning, name, other):  # those who count by it look it up
                 if (cells := judged(scenes)) != usual:
                     rows += f"| `{name}` = {other:g}, not {value:g} | {cells} |\n"
         text += rows
@@ -82,11 +68,11 @@ def tables(scenes: list[Any]) -> str:
     whole = table(scenes)
     without = ""
     for left_out in every:
-        strategies.FROM_DEFECT = tuple(one for one in every if one is not left_out)
-        without += f"| no defect of {left_out.method}, {left_out.points} | {judged(scenes)} |\n"
-    strategies.FROM_DEFECT = ()
-    alone = table(scenes)
-    strategies.FROM_DEFECT = every
+        others = tuple(one for one in every if one is not left_out)
+        with mock.patch.object(strategies, "FROM_DEFECT", others):
+            without += f"| no defect of {left_out.method}, {left_out.points} | {judged(scenes)} |\n"
+    with mock.patch.object(strategies, "FROM_DEFECT", ()):
+        alone = table(scenes)
     nothing, _, rest = whole.partition("\n| `")
     return f"{nothing}\n{without}| `{rest}\nWith second runs alone:\n\n{alone}"
 

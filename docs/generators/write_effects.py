@@ -14,13 +14,14 @@ from pathlib import Path
 
 import pendcore as pc
 from effect_sections import COMPILED, MORE
+from page_part import ROOT, table_of
 from pendcore._run.energy import LOSSES
 from pendcore._scene.effect_class import Effect, OwnEffect
 from pendcore._scene.effect_description import CAVEATS, COLUMNS, Description
 from pendcore.effects import KINDS
 from pendcore.page.formulas import formula, formulas
 
-FOLDER = Path(__file__).parents[1] / "effects"
+FOLDER = ROOT / "docs/effects"
 BOOKED = {
     "none": "Nothing: the effect does no work, or stores it as energy that `sol.energy()` counts.",
     "viscous": "`viscous`: the energy that the effect takes out of the motion, J.",
@@ -100,16 +101,14 @@ def _parts(told: Description, cls: type[Effect]) -> Iterator[str]:
 
 
 def _table(told: Description) -> str:
-    rows = [
-        "| parameter | symbol | unit | default | allowed | meaning |",
-        "|---|---|---|---|---|---|",
-    ]
+    rows = []
     for p in told.parameters:
         default = "needed" if p.required else "none" if p.optional else f"`{p.default!r}`"
         symbol = f"${formula(p.symbol, LATEX)}$" if p.symbol else ""
         sentence = p.sentence.replace("|", "\\|")
-        rows.append(f"| `{p.name}` | {symbol} | {p.unit} | {default} | {p.range} | {sentence} |")
-    return "\n".join(rows)
+        rows.append([f"`{p.name}`", symbol, p.unit, default, p.range, sentence])
+    heads = ["parameter", "symbol", "unit", "default", "allowed", "meaning"]
+    return table_of(heads, rows, left=6)
 
 
 def _python(effect: Effect, cls: type[Effect]) -> str:
@@ -140,12 +139,12 @@ def _toml(effect: Effect) -> str:
 
 def _index() -> str:
     losses = ", ".join(f"`{name}`" for name in sorted(LOSSES))
-    rows = ["| effect | what it is | kind | parameters |", "|---|---|---|---|"]
+    rows = []
     for kind, cls in KINDS.items():
         told = cls.description
         keys = ", ".join(f"`{p.name}`" for p in told.parameters)
-        rows.append(f"| [{told.name}]({kind}.md) | {told.sentence} | `{kind}` | {keys} |")
-    table = "\n".join(rows)
+        rows.append([f"[{told.name}]({kind}.md)", told.sentence, f"`{kind}`", keys])
+    table = table_of(["effect", "what it is", "kind", "parameters"], rows, left=4)
     return f"""\
 # Effects
 
@@ -159,7 +158,6 @@ points down; {WHERE["motor"]} has the signs of other sources.
 `scene.explain()` says what a scene simulates, what it leaves out, and what each effect costs.
 
 {table}
-
 With `pc.simulate(..., ledger=True)`, `sol.energy().ledger` tells where the energy went: {losses}
 are losses, the other entries are work done on the chain, and `residual` is the remainder of the
 balance.

@@ -13,16 +13,13 @@ from collections.abc import Iterator
 from math import inf
 from pathlib import Path
 
-from page_part import with_part
+from page_part import ROOT, table_of, with_part
 from pendcore.options import OPTIONS, RunOption
 
-ROOT = Path(__file__).parents[2]
-HEAD = """\
-| key | unit | default | meaning |
-|---|---|---|---|
-| `t_start` | s | `0.0` | start |
-| `t_end` | s | needed | end; before `t_start` the run goes backward |
-"""
+SPAN = [
+    ("`t_start`", "s", "`0.0`", "start"),
+    ("`t_end`", "s", "needed", "end; before `t_start` the run goes backward"),
+]
 KEYWORDS = re.compile(r"(?<=from the descriptors.\n    \"\"\"\n\n)(?:    \w+: .*\n)+")
 """The fields of the class of keywords."""
 
@@ -35,7 +32,7 @@ def keywords() -> str:
 def table() -> str:
     """Return the rows of the table, a key in each."""
     rows = (_row(one) for one in OPTIONS.values() if one.name != "events")  # tables of their own
-    return HEAD + "".join(f"| {' | '.join(cells)} |\n" for cells in rows)
+    return table_of(["key", "unit", "default", "meaning"], [*SPAN, *rows], left=4)
 
 
 def _row(one: RunOption) -> Iterator[str]:
@@ -62,10 +59,7 @@ def written() -> dict[Path, str]:
     text, replaced = KEYWORDS.subn(keywords(), module.read_text())
     if replaced != 1:
         raise ValueError(f"{module}: has {replaced} classes of keywords: must have one")
-    return {
-        module: text,
-        page: with_part(page.read_text(), "options", table()),
-    }
+    return {module: text, page: with_part(page.read_text(), "options", table())}
 
 
 if __name__ == "__main__":

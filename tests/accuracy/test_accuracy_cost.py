@@ -246,6 +246,7 @@ def test_interrupted_it_hands_over_what_it_has(book, limit):
     assert "nothing was measured before it was stopped" in str(found)
     assert json.loads(found.to_json())["uncertainty"] is None
     found.plot()
+    plt.gcf().draw_without_rendering()
 
 
 def test_progress_only_grows_and_what_looks_wrong_is_said_once():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 
 from pendcore import Case
@@ -63,7 +62,7 @@ def execute(args: argparse.Namespace) -> int:
         print(files.outcome(), file=sys.stderr)
         if not whole:
             print("interrupted: this is what was measured until then", file=sys.stderr)
-        print(json.dumps(cost.to_dict(), indent=2) if args.json else table, end="\n" * args.json)
+        print(cost.to_json() if args.json else table, end="\n" * args.json)
         files.refuse_if_none()
     return 0 if whole and not files.left_out else 1
 

@@ -184,6 +184,4 @@ def _times(times: list[float]) -> str:
 
 def _rows(pairs: Iterator[tuple[str, str]]) -> Iterator[str]:
     for name, value in pairs:
-        first, *more = wrap(value, 76)
-        yield f"  {name:16}  {first}"
-        yield from (f"{'':20}{line}" for line in more)
+        yield from wrap(value, 96, initial_indent=f"  {name:16}  ", subsequent_indent=20 * " ")

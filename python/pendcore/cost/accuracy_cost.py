@@ -182,8 +182,8 @@ class AccuracyCost:
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as JSON can hold it: infinite numbers become None."""
-        best = [(p.method, p.rtol, p.step) for p in self.pareto()]
-        points = [{**asdict(p), "pareto": (p.method, p.rtol, p.step) in best} for p in self.points]
+        best = self.pareto()
+        points = [{**asdict(p), "pareto": p in best} for p in self.points]
         return dict(as_json(asdict(self) | {"points": points}))
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
@@ -253,14 +253,15 @@ def _row(point: Point) -> str:
 
 
 def _wrapped(name: str, sentence: str) -> list[str]:
-    first, *more = wrap(sentence, 82)
-    return [f"  {name:11} {first}", *(f"{'':14}{line}" for line in more)]
+    return wrap(sentence, 96, initial_indent=f"  {name:11} ", subsequent_indent=14 * " ")
 
 
 def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
     from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
 
     theme = theme_of(ax)
+    if not ax.lines:  # without points matplotlib finds no powers of ten to label
+        ax.set(xlim=(1.0, 1e-17), ylim=(1.0, 10.0))
     ax.set(xscale="log", yscale="log")
     ax.set_xlabel("largest position error / total length\n(more accurate to the right)")
     counted = "right-hand sides"

@@ -18,7 +18,7 @@ import pendcore as pc
 from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.point import Point
-from pendcore.cost.reference import KNOWN, Reference, TooFarError, known_until, reference
+from pendcore.cost.reference import KNOWN, Reference, known_until, reference
 from pendcore.cost.runs import Start, has_error_estimate
 from pendcore.messages import Floats
 from pendcore.methods import known_methods, pair_of
@@ -42,12 +42,10 @@ class Contender:
 
     def timed(self) -> Point:
         """Return the point that the result keeps."""
-        if self.point.failure:
-            return replace(self.point, error=inf, repeats=len(self.seconds))
-        return replace(
-            self.point, seconds=min(self.seconds), median=median(self.seconds),
-            repeats=len(self.seconds),
-        )  # fmt: skip
+        point = replace(self.point, repeats=len(self.seconds))
+        if point.failure:
+            return point
+        return replace(point, seconds=min(self.seconds), median=median(self.seconds))
 
 
 @dataclass(slots=True, kw_only=True)
@@ -65,7 +63,7 @@ class Measurement:
     time_limit: float
     report: Callable[[float], object] = lambda fraction: None
     reference: Reference | None = None
-    contenders: list[Contender] = field(default_factory=list)
+    rows: list[list[Contender]] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     began: float = field(default_factory=monotonic)
     asked_t_span: tuple[float, float] = (0.0, 0.0)
@@ -89,9 +87,7 @@ class Measurement:
     def result(self) -> AccuracyCost:
         """Return what was measured; there are no points without a reference."""
         found = self.reference
-        tried = [one.timed() for one in self.contenders if one.seconds]
-        order = list(known_methods())
-        tried.sort(key=lambda p: (order.index(p.method), -(p.rtol or 0.0), -(p.step or 0.0)))
+        tried = [one.timed() for row in self.rows for one in row if one.seconds]
         return AccuracyCost(
             name=self.name,
             t_span=(self.start.t_start, self.start.t_end),
@@ -157,17 +153,20 @@ class Measurement:
 
     def _reference(self, stiff: bool) -> Reference:
         """Return the reference over as much of the span as the time allows."""
+        asked: dict[str, Any] = {"stiff": stiff, "points": self.points, **self.limits}
         while True:
-            try:
-                return reference(
-                    self.start, stiff=stiff, points=self.points,
-                    time_limit=SHARE * self._left(), **self.limits,
-                )  # fmt: skip
-            except TooFarError as reason:
-                begin = self.start.t_start
-                if reason.reached == begin or self._left() < self.time_limit / 3:
-                    raise
-                self._cut(begin + SHORTER * (reason.reached - begin), self._too_little())
+            limit = SHARE * self._left()
+            found = reference(self.start, time_limit=limit, **asked)
+            if len(found.times) > 1:
+                return found
+            begin, second = self.start.t_start, found.second
+            if second.t_reached == begin or self._left() < self.time_limit / 3:
+                remedy = ": or shorten t_span" if second.status == "time_limit" else ""
+                raise ValueError(
+                    f"no reference: within {limit:.3g} s no two methods got beyond the first of "
+                    f"the {self.points} times ({second.method}: {second.message}){remedy}"
+                )
+            self._cut(begin + SHORTER * (second.t_reached - begin), self._too_little())
 
     def _cut(self, t_end: float, why: str) -> None:
         """Measure a shorter span, and keep the reason for the first cut."""
@@ -179,23 +178,20 @@ class Measurement:
 
     def _try_each(self, stiff: bool) -> None:
         """Run each contender once, the loosest of all methods first."""
-        assert self.reference is not None
-        rows = [[*self._contenders_of(method)] for method in self._methods(stiff)]
+        self.rows = rows = [[*self._contenders_of(method)] for method in self._methods(stiff)]
         allowed = max(self._left(2 * SHARE), self._left() / 2) / max(len(rows), 1)
         left = [allowed] * len(rows)
-        ended: set[int] = set()
         longest = max((len(row) for row in rows), default=0)
         for k in range(longest):
             for i, row in enumerate(rows):
-                if k < len(row) and i not in ended and left[i] > 0:
+                if k < len(row) and left[i] > 0:
                     self._try(row[k], left[i])
-                    self.contenders.append(row[k])
                     left[i] -= sum(row[k].seconds)
                     if self.steps is None and self._is_short_enough(row[: k + 1], allowed):
-                        ended.add(i)
+                        del row[k + 1 :]
             self.report(0.2 + 0.3 * (k + 1) / longest)
-        untried = [next((x for x in row if not x.seconds), None) for row in rows]
-        left_out = [x.point for i, x in enumerate(untried) if x is not None and i not in ended]
+        cut_short = [row for row in rows if not row[-1].seconds]
+        left_out = [next(x.point for x in row if not x.seconds) for row in cut_short]
         if left_out:
             missed = ", ".join(f"{one.method} at {one.setting} and below" for one in left_out)
             self.remarks.append(
@@ -228,13 +224,13 @@ class Measurement:
 
     def _repeat(self) -> None:
         """Time all in rounds, each round in an order drawn anew, until the time is up."""
-        fine = [one for one in self.contenders if not one.point.failure]
+        tried = [one for row in self.rows for one in row if one.seconds]
+        fine = [one for one in tried if not one.point.failure]
         for number in range(1, self.repeats):
             random.Random(number).shuffle(fine)
             for one in fine:
-                if self._left() <= max(one.seconds[-1], 1e-3):
-                    continue
-                one.seconds.append(self._call(one.point)[1])
+                if self._left() > max(one.seconds[-1], 1e-3):
+                    one.seconds.append(self._call(one.point)[1])
             self.report(0.5 + 0.5 * number / self.repeats)
             if self._left() <= 1e-3:
                 break
@@ -259,7 +255,7 @@ class Measurement:
 
     def _methods(self, stiff: bool) -> list[str]:
         if self.methods is not None:
-            return self.methods
+            return [method for method in known_methods() if method in self.methods]
         known = [m for m, about in known_methods().items() if about["kind"] != "pair" or stiff]
         steps = {name: None if has_error_estimate(name) else 1e-3 for name in known}
         return [name for name, step in steps.items() if self.start.is_supported_by(name, step)]

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import inf, log
+from math import inf
+
+import numpy as np
 
 _UNITS = ((1e-3, 1e6, "us"), (1.0, 1e3, "ms"), (float("inf"), 1.0, "s"))
 
@@ -73,16 +74,11 @@ def front(points: Iterable[Point], uncertainty: float) -> list[Point]:
 
 def seconds_at(error: float, points: Sequence[Point], uncertainty: float) -> float | None:
     """Return the time at which the front reaches an error, s; None beyond its best."""
-    curve = [(max(p.error, uncertainty), p.seconds) for p in points]
-    if not curve or error < curve[-1][0]:
+    errors = [max(p.error, uncertainty, 1e-300) for p in reversed(points)]  # 0 has no logarithm
+    if not errors or error < errors[0]:
         return None
-    if error >= curve[0][0]:
-        return curve[0][1]
-    for (loose, cheap), (tight, dear) in pairwise(curve):
-        if tight <= error:
-            share = log(loose / error) / log(loose / tight)
-            return float(cheap * (dear / cheap) ** share)
-    raise AssertionError("unreachable: the error lies within the curve")
+    seconds = [p.seconds for p in reversed(points)]
+    return float(np.exp(np.interp(np.log(error), np.log(errors), np.log(seconds))))
 
 
 def duration(seconds: float) -> str:

@@ -69,6 +69,5 @@ def has_error_estimate(method: str) -> bool:
 def line_style(method: str, theme: Theme = LIGHT) -> dict[str, Any]:
     """Return how figures draw a method: matplotlib's colour, dash and marker."""
     name, dash, marker = known_methods()[method]["line"]
-    lengths = tuple(float(one) for one in dash.split()) if dash[0].isdigit() else None
-    linestyle = dash if lengths is None else (0, lengths)
+    linestyle = (0, tuple(map(float, dash.split()))) if dash[0].isdigit() else dash
     return {"color": getattr(theme, name), "linestyle": linestyle, "marker": marker}

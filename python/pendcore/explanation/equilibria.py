@@ -99,20 +99,20 @@ class FreeAngles:
         for joint, angle in sorted(locked.items()):
             turn = np.diff(start, prepend=0.0)[joint - 1] if angle is None else angle
             turning[joint], fixed[joint] = turning[joint - 1], fixed[joint - 1] + turn
-        self._turning = turning[1:]
+        self.turning = turning[1:]
         """(n, m): which links turn with each of the free angles."""
         self._fixed = fixed[1:]
         """The angle of each link against the first link that turns with it, or the ground, rad."""
 
     def q(self, z: Floats) -> Floats:
         """Angles of all links, (n,), from the free ones, (m,)."""
-        return self._turning @ z + self._fixed
+        return self.turning @ z + self._fixed
 
     def linearised(self, z: Floats) -> tuple[Floats, Floats, Floats]:
         """Accelerations at rest, (m,), and their derivatives by angles and by rates, (m, m)."""
         at_rest = self._t, self.q(z), np.zeros(len(self._fixed))
         residual = self._scene.accelerations(*at_rest)[self.leaders]
-        both = (one @ self._turning for one in self._scene.jacobian(*at_rest))
+        both = (one @ self.turning for one in self._scene.jacobian(*at_rest))
         slope, by_rate = (one[self.leaders] for one in both)
         return residual, slope, by_rate
 

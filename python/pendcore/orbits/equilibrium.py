@@ -211,8 +211,7 @@ def _described(scene: Scene, free: FreeAngles, z: Floats) -> Equilibrium:
         roots = np.sqrt(squares.astype(complex))
         values, shapes = np.concatenate([roots, -roots]), np.hstack([shapes, shapes])
     values = values.astype(complex)
-    turning = np.array([free.q(z + one) - q for one in np.eye(m)]).reshape(m, -1).T
-    angles = (turning @ shapes).astype(complex)
+    angles = (free.turning @ shapes).astype(complex)
     for column in angles.T:
         column /= column[np.argmax(np.abs(column))]
     order = np.lexsort([-values.imag, np.abs(values.imag), -values.real])
