@@ -217,8 +217,7 @@ def test_costs_are_of_the_links_of_each_effect_and_of_all():
     assert [cost.what for cost in costs] == ["links", *effects, "all"]
     assert costs[1].operations > costs[2].operations == 0
     assert costs[3].operations is None
-    assert costs[0].nanoseconds > 1
-    assert costs[4].nanoseconds > costs[3].nanoseconds / 2 > 100
+    assert all(cost.nanoseconds > 0 for cost in costs)
 
 
 STARTED = {
