@@ -5,7 +5,6 @@ while the site is built (executed.py). The pages of the Python reference come fr
 (python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
 examples and notebooks from their files (pages_of_files.py), those of the gallery by running its
 files (gallery_pages.py). The first page shows a run alive. Colours and sizes are the house's.
-Names in the documentation of Python, NumPy and Matplotlib are linked by the list in inventories.py.
 """
 
 from __future__ import annotations
@@ -19,11 +18,13 @@ ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 
 import cpp_reference  # noqa: E402
+import executed  # noqa: E402
 import gallery_pages  # noqa: E402
-import inventories  # noqa: E402
+import mathml  # noqa: E402
 import pages_of_files  # noqa: E402
 import pendcore as pc  # noqa: E402
 import python_reference  # noqa: E402
+import repository_pages  # noqa: E402
 from pendcore.page.html import core_for_browsers  # noqa: E402
 from pendcore.plotting import css_variables  # noqa: E402
 from sphinx.application import Sphinx  # noqa: E402
@@ -37,13 +38,8 @@ extensions = [
     "myst_parser",
     "numpydoc",
     "sphinx.ext.autodoc",
-    "sphinx.ext.intersphinx",
     "sphinx_copybutton",
     "sphinx_design",
-    "executed",
-    "gallery_pages",
-    "mathml",
-    "repository_pages",
 ]
 exclude_patterns = ["site", "generators", "records", "figures"]
 
@@ -57,8 +53,6 @@ autodoc_typehints = "none"
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 copybutton_exclude = ".linenos, .gp, .go"
-
-intersphinx_mapping = inventories.write(ROOT / "inventories")
 
 html_theme = "pydata_sphinx_theme"
 html_title = "pendcore"
@@ -116,5 +110,10 @@ def quiet(app: Sphinx, failure: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> None:
+    app.add_html_math_renderer("mathml", (mathml.inline, None), (mathml.displayed, None))
+    app.connect("source-read", gallery_pages.add_film)
+    app.connect("source-read", repository_pages.for_the_site)
+    # Before Sphinx collects images, so that it copies these as well.
+    app.connect("doctree-read", executed.execute_page, priority=100)
     app.connect("html-collect-pages", every_picture)
     app.connect("build-finished", quiet)

@@ -7,7 +7,6 @@ as they are written, because their equations are laid out as text.
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 
 ABOUT = re.compile(r"\A/// \\file\n((?:///.*\n)+)")
@@ -23,7 +22,6 @@ PAGES = {
 
 
 def write(headers: Path, folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     shown = {headers / "pendcore.hpp"}
     for title, names in PAGES.items():

@@ -1,4 +1,4 @@
-"""A Sphinx extension that executes the Python of every page while the site is built.
+"""Executes the Python of every page while the site is built.
 
 The blocks of a page run from top to bottom in one namespace, in an empty folder. What a block
 prints stands below it. If the page itself shows an output there, it must be the same but for spaces
@@ -14,8 +14,6 @@ import ast
 import contextlib
 import doctest
 import io
-import os
-import re
 import sys
 import tempfile
 import tomllib
@@ -23,52 +21,45 @@ import traceback
 import warnings
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
 logger = logging.getLogger(__name__)
 NOT_EXECUTED = "not executed for the site"
-NOTEBOOK = "<!-- a notebook -->"
-"""In such a page, what a block's last line shows in a notebook stands below the block."""
-EXAMPLE = re.compile(r"<!-- the file: (.*) -->")
-REFERENCE = "reference/python/"
-"""Pages whose examples are doctests, which the tests run."""
+RUN_ELSEWHERE = ("gallery/", "reference/python/")
+"""Pages whose Python is run as a file by gallery_pages.py, or as doctests by the tests."""
 
 
 def execute_page(app: Sphinx, doctree: nodes.document) -> None:
     page = app.env.docname
     blocks = [b for b in doctree.findall(nodes.literal_block) if b.get("language") == "python"]
-    text = Path(app.env.doc2path(page)).read_text()
-    if not blocks or NOT_EXECUTED in text or page.startswith(REFERENCE):
+    if not blocks or page.startswith(RUN_ELSEWHERE):
+        return
+    if NOT_EXECUTED in Path(app.env.doc2path(page)).read_text():
         return
     mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
     names: dict[str, Any] = {"__name__": "__main__"}
-    is_notebook = NOTEBOOK in text
-    example = EXAMPLE.search(text)
-    if example:
-        names["__file__"] = example.group(1)
-    before = os.getcwd()
-    with tempfile.TemporaryDirectory() as folder, mpl.rc_context():
-        os.chdir(folder)
-        sys.path.insert(0, folder)
-        try:
-            write_cases(doctree)
-            for number, block in enumerate(blocks, start=1):
-                where = f"{page}, block {number}"
-                printed, value = run(block.astext(), names, where)
-                html = shown(value, block.astext()) if is_notebook else ""
-                figures = [saved(app, plt.figure(k), page, number, k) for k in plt.get_fignums()]
-                plt.close("all")
-                add_below(block, printed, figures, where, html)
-        finally:
-            os.chdir(before)
-            sys.path.remove(folder)
+    if page.startswith("examples/"):
+        names["__file__"] = str(app.srcdir.parent / f"{page}.py")
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        contextlib.chdir(folder),
+        patch.object(sys, "path", [folder, *sys.path]),
+        mpl.rc_context(),
+    ):
+        write_cases(doctree)
+        for number, block in enumerate(blocks, start=1):
+            where = f"{page}, block {number}"
+            printed, value = run(block.astext(), names, where)
+            html = shown(value, block.astext()) if page.startswith("notebooks/") else ""
+            figures = [saved(app, plt.figure(k), page, number, k) for k in plt.get_fignums()]
             plt.close("all")
+            add_below(block, printed, figures, where, html)
 
 
 def write_cases(doctree: nodes.document) -> None:
@@ -141,9 +132,3 @@ def add_below(
         added.append(nodes.raw("", f"<div class='shown'>{html}</div>", format="html"))
     for node in reversed(added):
         parent.insert(at, node)
-
-
-def setup(app: Sphinx) -> dict[str, Any]:
-    # Before Sphinx collects images, so that it copies these as well.
-    app.connect("doctree-read", execute_page, priority=100)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -98,11 +98,6 @@ def add_film(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = f"{title}\n\n```{{raw}} html\n{shown}\n```\n{rest}"
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
-    app.connect("source-read", add_film)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}
-
-
 def _read(file: Path) -> Scene:
     text = file.read_text()
     title, _, about = (ast.get_docstring(ast.parse(text)) or "").partition("\n")
@@ -146,8 +141,6 @@ def _page(scene: Scene) -> str:
 
 <p><a class="reference external" href="../{FILMS}/{scene.name}.html">Change it in your
 browser</a>: a page with the core inside.</p>
-
-<!-- not executed for the site: gallery_pages.py runs the file -->
 
 ```python
 {scene.code}

@@ -1,4 +1,4 @@
-"""A Sphinx extension that writes formulas as MathML: browsers typeset them without a script."""
+"""Writes formulas as MathML: browsers typeset them without a script."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import Any
 
 from docutils import nodes
 from latex2mathml.converter import convert
-from sphinx.application import Sphinx
 
 
 def inline(self: Any, node: nodes.math) -> None:
@@ -18,8 +17,3 @@ def displayed(self: Any, node: nodes.math_block) -> None:
     formula = convert(node.astext(), display="block")
     self.body.append(f"<div class='math'>{formula}</div>")
     raise nodes.SkipNode
-
-
-def setup(app: Sphinx) -> dict[str, Any]:
-    app.add_html_math_renderer("mathml", (inline, None), (displayed, None))
-    return {"parallel_read_safe": True, "parallel_write_safe": True}

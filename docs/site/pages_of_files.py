@@ -9,10 +9,7 @@ from __future__ import annotations
 
 import ast
 import json
-import shutil
 from pathlib import Path
-
-from executed import NOTEBOOK
 
 NOTEBOOKS = ("textbook_swing", "chaos_and_trust", "friction_and_stops", "saddle_transport")
 
@@ -24,8 +21,7 @@ def write_examples(files: Path, folder: Path) -> None:
         about = ast.get_docstring(ast.parse(text)) or ""
         title = about.partition("\n")[0].rstrip(".").partition(":")[0]
         code = text.split('"""', 2)[2].strip()
-        page = f"# {title}\n\n<!-- the file: {path} -->\n\n{about}\n\n```python\n{code}\n```\n"
-        pages[path] = title, page
+        pages[path] = f"# {title}\n\n{about}\n\n```python\n{code}\n```\n"
     _write(folder, "# Examples\n\nPrograms of one screen, with what they print and draw.", pages)
 
 
@@ -34,27 +30,23 @@ def write_notebooks(files: Path, folder: Path) -> None:
     for path in (files / f"{name}.ipynb" for name in NOTEBOOKS):
         cells = json.loads(path.read_text())["cells"]
         texts = ["".join(cell["source"]) for cell in cells]
-        title = texts[0].partition("\n")[0].removeprefix("# ")
         shown = [
             f"```python\n{text}\n```\n" if cell["cell_type"] == "code" else f"{text}\n"
             for cell, text in zip(cells, texts, strict=True)
         ]
-        # MyST takes a title before anything else.
-        pages[path] = title, "\n".join([*shown, f"{NOTEBOOK}\n"])
+        pages[path] = "\n".join(shown)
     about = (
         "Each can be downloaded, and is run while the site is built: what it shows is alive here."
     )
     _write(folder, f"# Notebooks\n\n{about}", pages)
 
 
-def _write(folder: Path, about: str, pages: dict[Path, tuple[str, str]]) -> None:
-    """Write pages, each with a title and a text, and one that lists them."""
-    shutil.rmtree(folder, ignore_errors=True)
+def _write(folder: Path, about: str, pages: dict[Path, str]) -> None:
+    """Write pages, and one that lists them."""
     folder.mkdir(parents=True)
-    for path, (_, text) in pages.items():
+    for path, text in pages.items():
         file = f"../../examples/{'notebooks/' * (path.suffix == '.ipynb')}{path.name}"
         (folder / f"{path.stem}.md").write_text(f"{text}\n{{download}}`{path.name} <{file}>`\n")
-    rows = "\n".join(f"* [{title}]({path.stem}.md)" for path, (title, _) in pages.items())
     tree = "\n".join(path.stem for path in pages)
-    index = f"{about}\n\n{rows}\n\n:::{{toctree}}\n:hidden:\n\n{tree}\n:::\n"
+    index = f"{about}\n\n:::{{toctree}}\n:maxdepth: 1\n\n{tree}\n:::\n"
     (folder / "index.md").write_text(index)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import shutil
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -52,7 +51,6 @@ def callables(module: Any) -> list[str]:
 
 
 def write(folder: Path) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     listed = {name for names in GROUPS.values() for name in names}
     if differing := listed ^ {*callables(pendcore)}:

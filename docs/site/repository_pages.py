@@ -1,4 +1,4 @@
-"""A Sphinx extension for pages that are written to be read in the repository, too.
+"""Makes pages of the site of those that are written to be read in the repository, too.
 
 A link to an example leads to its page. A link to a folder, or to a Markdown file outside docs/,
 becomes plain text. A README lists the pages of its folder for the site's navigation, in its order.
@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 from sphinx.application import Sphinx
 
@@ -36,8 +35,3 @@ def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
     if page.endswith("/README"):
         pages = "\n".join(dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", source[0])))
         source[0] += f"\n\n:::{{toctree}}\n:hidden:\n\n{pages}\n:::\n"
-
-
-def setup(app: Sphinx) -> dict[str, Any]:
-    app.connect("source-read", for_the_site)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}

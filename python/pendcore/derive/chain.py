@@ -59,8 +59,6 @@ class Chain:
         P_0, ..., P_n, the pivot, joints and tip, m, and their velocities, m/s.
     centers, center_velocities, center_accelerations : list of (Expr, Expr)
         C_1, ..., C_n, the mass centres, m, their velocities, m/s, and accelerations, m/s^2.
-    tip_acceleration : (Expr, Expr)
-        The acceleration of P_n, where a payload is, m/s^2.
     """
 
     def __init__(self, notation: Notation, path: Vector) -> None:
@@ -78,13 +76,14 @@ class Chain:
         self.joint_velocities = [*map(self.velocity, self.joints)]
         self.center_velocities = [*map(self.velocity, self.centers)]
         self.center_accelerations = [*map(self.velocity, self.center_velocities)]
-        self.tip_acceleration = self.velocity(self.joint_velocities[-1])
 
     def _along(self, axis: str, law: Expr) -> Expr:
         if law == 0:
             return law
         symbols = self.notation.moving(axis, "_A", "A")
-        self.path |= {symbol: law.diff(self.notation.t, k) for k, symbol in enumerate(symbols)}
+        for k, (symbol, unit) in enumerate(zip(symbols, ("m", "m/s", "m/s^2"), strict=True)):
+            self.path[symbol] = law.diff(self.notation.t, k)
+            self.notation.meanings[symbol] = f"motion of the pivot, {unit}"
         self._rates |= dict(pairwise(symbols))
         return symbols[0]
 

@@ -100,13 +100,11 @@ class Derivation(Motion):
     def energies_by_definitions(self) -> Vector:
         """T, of links, payload and rotors, and V, J, with the pivot's motion as symbols."""
         s, chain = self.symbols, self.chain
-        moved = [*zip(s.qd, chain.centers, chain.center_velocities, strict=True)]
-        moved.append((s.qd[-1], chain.joints[-1], chain.joint_velocities[-1]))
         kinetic = potential = Integer(0)
-        # The tip comes last, and may have no body.
-        for body, (rate, (_, y), velocity) in zip(self.equations.bodies, moved, strict=False):
-            kinetic += body.mass * dot(velocity, velocity) / 2 + body.inertia * rate**2 / 2
-            potential -= s.gravity * body.mass * y
+        for body in self.equations.bodies:
+            velocity = chain.velocity(body.center)
+            kinetic += body.mass * dot(velocity, velocity) / 2 + body.inertia * body.rate**2 / 2
+            potential -= s.gravity * body.mass * body.center[1]
         for joint, armature in enumerate(self.equations.armatures, start=1):
             kinetic += armature * chain.joint(joint)[1] ** 2 / 2
         potential = expand(potential)
@@ -125,15 +123,13 @@ class Derivation(Motion):
         """V, of weights and springs, J, in t, q and parameters; zero at the origin's height."""
         return self.energies_by_definitions[1].xreplace(self.definitions)
 
-    def powers_with(self, ground_force: Vector) -> dict[Any, Expr]:
-        """Return the power of each effect, W, with its loads as symbols.
-
-        The ground's force on link 1, N, is put in as it is given.
-        """
+    @cached_property
+    def powers_by_forces(self) -> dict[Any, Expr]:
+        """The power of each effect, W, with its loads and joint forces as symbols."""
         found: dict[Any, Expr] = {}
         for law in self.equations.laws:
             if law.power is not None:
-                power = law.power(self.chain, ground_force)
+                power = law.power(self.chain, self.equations.forces[0])
             elif law.couple is not None and law.stored is None:
                 phi, w, _ = self.chain.joint(law.effect.joint)
                 power = law.couple(phi, w) * w
@@ -145,7 +141,8 @@ class Derivation(Motion):
     @cached_property
     def powers_by_definitions(self) -> dict[Any, Expr]:
         """The power of each effect, W, with its loads as symbols."""
-        return self.powers_with(self.equations.reactions[0])
+        known = self.equations.solved_forces
+        return {effect: p.xreplace(known) for effect, p in self.powers_by_forces.items()}
 
     @cached_property
     def powers(self) -> dict[Any, Expr]:
@@ -163,7 +160,7 @@ class Derivation(Motion):
         equations.
         """
         s = self.symbols
-        torques = {d.symbol: d.value for d in self.equations.torques.values()}
+        torques = dict(self.equations.torques.values())
         residual = self.chain.rate(sum(self.energies_by_definitions))
         residual -= sum(self.powers_by_definitions.values(), Integer(0))
         for i, rate in enumerate(s.qd):

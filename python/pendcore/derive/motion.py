@@ -65,8 +65,8 @@ class Motion:
     def definitions(self) -> dict[Symbol, Expr]:
         """The symbols of torques and loads, in t, q, qd and parameters alone."""
         known: dict[Symbol, Expr] = {}
-        for definition in self.equations.definitions:
-            known[definition.symbol] = definition.value.xreplace(known)
+        for symbol, value in self.equations.definitions.items():
+            known[symbol] = value.xreplace(known)
         return known
 
     @cached_property
@@ -191,8 +191,7 @@ class Motion:
     def _elimination(self) -> tuple[Assignments, tuple[Expr, ...]]:
         """M = L D L^T, L h = f, L^T a = D^-1 h; no pivoting, because M is positive definite."""
         matrix, right = (entries.as_mutable() for entries in self._free)
-        done = [(d.symbol, d.value) for d in self.equations.definitions]
-        done += self.named.entries.items()
+        done = [*self.equations.definitions.items(), *self.named.entries.items()]
 
         def keep(letter: str, index: str, value: Expr) -> Expr:
             if value.is_Atom:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from sympy import Expr, Integer, Symbol, expand
 
 from pendcore.derive.chain import Chain, Vector, cross, minus, of_differences
-from pendcore.derive.laws import Definition, Law, LinkLoad
+from pendcore.derive.laws.law import Law, LinkLoad
 
 NOTHING = Integer(0)
 
@@ -42,6 +42,8 @@ class BodyEquations(NamedTuple):
 
     mass: Expr
     inertia: Expr
+    center: Vector
+    rate: Symbol  # at which it turns
     acceleration: Vector
     force: tuple[Symbol, Symbol]
     newton: tuple[Balance, ...]
@@ -100,41 +102,42 @@ class NewtonEuler:
             return None
         mass, inertia = (sum(column, NOTHING) for column in zip(*found, strict=True))
         force, weight = self._force(f"p{self.n}"), self.weight(mass)
-        acceleration, couple = self.chain.tip_acceleration, inertia * self.notation.qdd[-1]
+        tip, rate = self.chain.joints[-1], self.notation.qd[-1]
+        acceleration = self.chain.velocity(self.chain.joint_velocities[-1])
         newton = tuple(Balance(mass * acceleration[k], weight[k] - force[k]) for k in (0, 1))
-        return BodyEquations(mass, inertia, acceleration, force, newton, Balance(couple, couple))
+        couple = inertia * self.notation.qdd[-1]
+        euler = Balance(couple, couple)
+        return BodyEquations(mass, inertia, tip, rate, acceleration, force, newton, euler)
 
     @cached_property
-    def torques(self) -> dict[int, Definition]:
-        """tau_j, the torque at each joint that has one, from the laws of effects, N m."""
+    def torques(self) -> dict[int, tuple[Symbol, Expr]]:
+        """tau_j, the torque at each joint that has one, and the sum of laws it stands for, N m."""
         found: dict[int, Expr] = {}
         for law in self.laws:
             if law.couple is not None:
                 j = law.effect.joint
                 phi, w, _ = self.chain.joint(j)
                 found[j] = found.get(j, NOTHING) + law.couple(phi, w)
-        symbol = self.notation.symbol
-        return {
-            j: Definition(symbol(f"tau{j}", rf"\tau_{{{j}}}"), x, f"torque at joint {j}, N m")
-            for j, x in sorted(found.items())
-        }
+        torques = {}
+        for j, torque in sorted(found.items()):
+            symbol = self.notation.symbol(f"tau{j}", rf"\tau_{{{j}}}")
+            self.notation.meanings[symbol] = f"torque at joint {j}, N m"
+            torques[j] = symbol, torque
+        return torques
 
     @cached_property
-    def definitions(self) -> tuple[Definition, ...]:
+    def definitions(self) -> dict[Symbol, Expr]:
         """All symbols that stand for laws, each in terms of those before it."""
-        units = ("m", "m/s", "m/s^2")  # by the number of d in a name
-        path = (
-            Definition(symbol, law, f"motion of the pivot, {units[symbol.name.count('d')]}")
-            for symbol, law in self.chain.path.items()
-        )
-        of_loads = (d for law in self.laws for d in law.definitions(self.chain))
-        return (*path, *of_loads, *self.torques.values())
+        found = dict(self.chain.path)
+        for law in self.laws:
+            found |= law.definitions(self.chain)
+        return found | dict(self.torques.values())
 
     def joint_couple(self, joint: int) -> Expr:
         """Return the couple on the link beyond a joint: torque, rotor and lock together, N m."""
         if joint > self.n:
             return NOTHING
-        torque = self.torques[joint].symbol if joint in self.torques else NOTHING
+        torque = self.torques[joint][0] if joint in self.torques else NOTHING
         rotor = self.armatures[joint - 1] * self.chain.joint(joint)[2]
         return torque + self.holding.get(joint, NOTHING) - rotor
 
@@ -178,8 +181,10 @@ class NewtonEuler:
         for load in loads:
             moment += of_differences(load.moment + cross(minus(begin, point), load.force))
         euler = Balance(resistance * turning, expand(moment))
-        force = self.forces[link - 1]
-        return BodyEquations(mass, inertia, acceleration, force, newton, euler, about_pivot)
+        return BodyEquations(
+            mass, inertia, center, s.qd[link - 1], acceleration, self.forces[link - 1], newton,
+            euler, about_pivot,
+        )  # fmt: skip
 
     @cached_property
     def solved_forces(self) -> dict[Symbol, Expr]:

@@ -54,13 +54,14 @@ class Notation:
         about the mass centre (kg m^2): symbols, or ``L/2`` and ``m L^2/12`` for a uniform rod.
     parameters : list of Parameter
         The constants of the scene: those of links and gravity first, then the effects'.
-    latex_names : dict
-        How LaTeX writes the symbols.
+    latex_names, meanings : dict
+        How LaTeX writes the symbols, and what those of laws mean, in words with the unit last.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.n = len(scene.links)
         self.latex_names: dict[Symbol, str] = {}
+        self.meanings: dict[Symbol, str] = {}
         self.parameters: list[Parameter] = []
         self._ranks: dict[Symbol, tuple[int, int]] = {}
         links = [*enumerate(scene.links, start=1)]

@@ -47,7 +47,7 @@ def computations(derivation: Derivation) -> dict[str, Computation]:
     ``accelerations`` (n,), rad/s^2; ``reactions`` F_01x, F_01y, F_12x, ... (2n,), N; ``energy``,
     kinetic and potential, J; ``powers`` of the effects in the order of `powers_by_name`, W.
     """
-    laws = [(known.symbol, known.value) for known in derivation.equations.definitions]
+    laws = derivation.equations.definitions.items()
     forces = [part for force in derivation.equations.reactions for part in force]
     return {
         "accelerations": share(derivation.shared_accelerations, derivation.shared),
@@ -148,7 +148,7 @@ def assigned(
     derivation: Derivation, computation: Computation, write: Write, statement: str, remark: str
 ) -> Iterator[str]:
     """Yield the assignments of a computation as statements, with what the laws' symbols mean."""
-    meanings = {known.symbol: known.meaning for known in derivation.equations.definitions}
+    meanings = derivation.symbols.meanings
     for symbol, value in computation.assignments:
         if symbol in meanings:
             yield f"{remark}{meanings[symbol]}"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from pendcore.derive.laws import joints
-from pendcore.derive.laws.law import Definition, Law, LinkLoad, NotSmooth
+from pendcore.derive.laws.law import Law, NotSmooth
 from pendcore.derive.laws.rod_drag import rod_drag
 from pendcore.derive.notation import Notation
 
@@ -53,6 +53,3 @@ def laws_of(effects: Sequence[Any], notation: Notation) -> list[Law]:
                 "or leave it to pendcore.simulate"
             ) from None
     return laws
-
-
-__all__ = ["LAWS", "WITHOUT_LAW", "Definition", "Law", "LinkLoad", "laws_of"]

@@ -24,14 +24,6 @@ class LinkLoad(NamedTuple):
     moment: Expr
 
 
-class Definition(NamedTuple):
-    """A symbol that stands for a longer expression of a law, such as a speed or a force."""
-
-    symbol: Symbol
-    value: Expr
-    meaning: str
-
-
 @dataclass(frozen=True)
 class Law:
     """What an effect does; most laws have one of the parts below `statement`."""
@@ -42,9 +34,10 @@ class Law:
     # that it stores, J, of the angle: without that the couple does work.
     couple: Callable[[Expr, Expr], Expr] | None = None
     stored: Callable[[Expr], Expr] | None = None
-    # A force on a link, and symbols for it and its power, each defined by those before it.
+    # A force on a link, and what symbols for it and its power stand for, such as a speed: each in
+    # terms of those before it.
     load: LinkLoad | None = None
-    definitions: Callable[[Chain], tuple[Definition, ...]] = lambda chain: ()
+    definitions: Callable[[Chain], dict[Symbol, Expr]] = lambda chain: {}
     # The power that the effect brings into the chain besides that of its couple, W, also of the
     # force of the ground on link 1, N.
     power: Callable[[Chain, Vector], Expr] | None = None

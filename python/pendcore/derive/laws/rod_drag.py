@@ -19,7 +19,7 @@ from typing import Any
 from sympy import Abs, Expr, Integer, Symbol
 
 from pendcore.derive.chain import Chain, Vector, across, dot, minus
-from pendcore.derive.laws.law import Definition, Law, LinkLoad
+from pendcore.derive.laws.law import Law, LinkLoad
 from pendcore.derive.notation import RATE, Notation
 
 AT_REST = 1e-100
@@ -50,9 +50,16 @@ def rod_drag(effect: Any, s: Notation) -> Law:
         s.symbol(*s.fresh(f"{name}_{i}", f"{latex},{i}}}"))
         for name, latex in (("w0", "w_{0"), ("w1", "w_{1"), ("Fd", "F_{d"), ("Td", "T_{d"))
     )
+    begins, rod = f"where rod {i} begins", f"rod {i}"
+    s.meanings |= {
+        w0: f"speed across the rod {begins}, relative to the wind, m/s",
+        w1: f"the same where {rod} ends, m/s",
+        force: f"drag on {rod}, across it, N",
+        moment: f"its moment about the joint {begins}, N m",
+    }
     k = density * drag * diameter / 2
 
-    def definitions(chain: Chain) -> tuple[Definition, ...]:
+    def definitions(chain: Chain) -> dict[Symbol, Expr]:
         near = dot(normal, minus(chain.joint_velocities[i - 1], wind))
         size = Abs(w0) + Abs(w1) + at_rest
         direction = (w0 + w1) / size
@@ -60,13 +67,7 @@ def rod_drag(effect: Any, s: Notation) -> Law:
         between = 2 * (w0 * w1 + Abs(w0) * Abs(w1)) * direction
         resultant = -k * length / 3 * direction * (w0**2 + Abs(w0) * Abs(w1) + w1**2)
         turn = -k * length**2 / 12 * (ends / size**2 + between)
-        begins, rod = f"where rod {i} begins", f"rod {i}"
-        return (
-            Definition(w0, near, f"speed across the rod {begins}, relative to the wind, m/s"),
-            Definition(w1, w0 + length * turning, f"the same where {rod} ends, m/s"),
-            Definition(force, resultant, f"drag on {rod}, across it, N"),
-            Definition(moment, turn, f"its moment about the joint {begins}, N m"),
-        )
+        return {w0: near, w1: w0 + length * turning, force: resultant, moment: turn}
 
     def power(chain: Chain, ground_force: Vector) -> Expr:
         return force * dot(normal, chain.joint_velocities[i - 1]) + moment * turning

@@ -37,7 +37,8 @@ def kinematics(page: Page) -> None:
     text = "The velocity is the derivative of the position with respect to time."
     found = _points(page, centers, chain.center_velocities, 1)
     page.step("Velocities of the mass centres", text, *found)
-    named, moved = [*centers, joints[-1]], [body.acceleration for body in page.equations.bodies]
+    moved = [body.acceleration for body in page.equations.bodies]
+    named = [page.center(i) for i in range(1, len(moved) + 1)]
     text = "The acceleration is the derivative of the velocity with respect to time."
     page.step("Accelerations of the mass centres", text, *_points(page, named, moved, 2))
     page.step(
@@ -97,7 +98,7 @@ def _moments_of_inertia(page: Page) -> None:
 
 def _effects(page: Page) -> None:
     equations = page.equations
-    of_laws = ((known.symbol, known.value) for known in equations.definitions)
+    of_laws = equations.definitions.items()
     found: list[Sides] = [one for one in of_laws if one[0] not in page.chain.path]
     for load in equations.loads:
         parts = total(page.along(u, f) for u, f in zip("ij", load.force, strict=True))
@@ -127,6 +128,6 @@ def statements(page: Page) -> list[str]:
 def _points(
     page: Page, names: Sequence[Formula], vectors: Sequence[Vector], dots: int
 ) -> Iterator[Sides]:
-    for name, vector in zip(names, vectors, strict=False):  # the tip may have no body
+    for name, vector in zip(names, vectors, strict=True):
         for axis, component in zip("xy", vector, strict=True):
             yield page.coordinate(axis, name, dots), component

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from sympy import Expr, Symbol
 
 from pendcore.derive.derivation import Derivation
-from pendcore.derive.laws import LinkLoad
+from pendcore.derive.laws.law import LinkLoad
 from pendcore.derive.notation import MASS
 from pendcore.derive.step import Equation, Formula, Step
 
@@ -63,10 +63,9 @@ class Page:
         """Return the name of P_0, ..., P_n: A, B and D for two links, as in the textbook."""
         return Formula(("A", "B", "D")[joint] if self.n <= 2 or joint == 0 else f"P_{{{joint}}}")
 
-    @staticmethod
-    def center(link: int) -> Formula:
-        """Return the name of a mass centre."""
-        return Formula(f"C_{{{link}}}")
+    def center(self, body: int) -> Formula:
+        """Return the name of a mass centre; that of a payload, the last body, is the tip."""
+        return Formula(f"C_{{{body}}}") if body <= self.n else self.joint(self.n)
 
     def coordinate(self, axis: str, point: Formula, dots: int = 0) -> Symbol:
         """Return x_C1, or with dots its velocity and acceleration."""

@@ -39,10 +39,9 @@ def equations_of_motion(page: Page) -> None:
 
 def _reactions(page: Page) -> Iterator[Sides]:
     """Yield F_p, F_21 and so on, with accelerations put in where the textbook does."""
-    points = [*map(page.center, range(1, page.n + 1)), page.joint(page.n)]
     for i, body in reversed([*enumerate(page.equations.bodies, start=1)]):
         for k, axis in enumerate("xy"):
-            acceleration = page.coordinate(axis, points[i - 1], 2)
+            acceleration = page.coordinate(axis, page.center(i), 2)
             if i == page.n == 2:
                 acceleration = body.acceleration[k]
             force = body.solved(k, body.mass * acceleration)
@@ -138,7 +137,7 @@ def first_order(page: Page) -> None:
 def energy(page: Page) -> None:
     """Write energies, powers and their balance: the check that the equations of motion allow."""
     energies = zip("TV", page.derivation.energies_by_definitions, strict=True)
-    powers = page.derivation.powers_with(page.equations.forces[0])
+    powers = page.derivation.powers_by_forces
     names = [page.s.symbol(f"P{i}", f"P_{{{i}}}") for i in range(1, len(powers) + 1)]
     pairs = zip(names, powers, strict=True)
     told = (f"${page.s.latex(name)}$ is that of the {_named(effect)}" for name, effect in pairs)

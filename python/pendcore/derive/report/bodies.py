@@ -20,9 +20,6 @@ from pendcore.messages import Floats
 from pendcore.plotting import sketch
 from pendcore.plotting.sketch import Sketch, clear_direction, direction, name
 
-COUPLES = {"viscous_joint", "torsional_spring", "motor"}
-"""Kinds of effects that act by a couple in their joint."""
-
 A_ROW = 3
 """The largest number of bodies side by side."""
 TITLE = 18.0
@@ -39,7 +36,6 @@ def mechanism(page: Page, q: Sequence[float]) -> Drawing:
     total = float(np.hypot(*np.ptp(np.vstack([places, centers]), axis=0)))
     figure = Figure(figsize=(5.6, 4.6))
     on = sketch.Sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), max(total, 0.6 * sum(lengths)))
-    couples = {getattr(e, "joint", 0) for e in scene.effects if e.kind in COUPLES}
     _frame(on, scene, places)
     for i, angle in enumerate(q, start=1):
         start, end = places[i - 1], places[i]
@@ -48,7 +44,7 @@ def mechanism(page: Page, q: Sequence[float]) -> Drawing:
         sketch.weight(on, centers[i - 1], rf"$\mathbf{{G}}_{{{i}}}$", 0.16)
         reach = min(0.14, 0.3 * lengths[i - 1] / on.size)
         sketch.angle_from_x(on, start, angle, rf"$q_{{{i}}}$", reach)
-        if i in couples:  # around the joint, where nothing else is
+        if i in page.equations.torques:  # around the joint, where nothing else is
             before = q[i - 2] + np.pi if i > 1 else -np.pi / 2
             clear = clear_direction([0.0, angle, angle / 2, before, np.pi / 2])
             sketch.couple(on, start, clear, rf"$\tau_{{{i}}}$", 0.085)

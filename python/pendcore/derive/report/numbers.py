@@ -28,10 +28,9 @@ LOCKS_IN_THE_CORE = (
 def put_in(derivation: Derivation) -> dict[str, Any]:
     """Return M and f with the numbers of the scene, and the laws in which they are written."""
     write, locking = derivation.symbols.latex, derivation.locking
-    defined = derivation.equations.definitions
-    units = {known.symbol: known.meaning.rpartition(", ")[2] for known in defined}
     entries = derivation.named.entries
-    laws = needed([(d.symbol, d.value) for d in defined], entries.values())
+    laws = needed(derivation.equations.definitions.items(), entries.values())
+    units = {x: words.rpartition(", ")[2] for x, words in derivation.symbols.meanings.items()}
     blocks = [
         [
             row
