@@ -17,28 +17,31 @@ function pairs(numbers) {
   return Array.from({ length: numbers.length / 2 }, both);
 }
 
-/**
- * What a run of the core is at a time: angles, rad, rates, rad/s, and what its ledger has booked, J;
- * places of pivot, joints and tip, m, forces at joints, N, and energies, J, when they are asked for.
- */
-function momentOf(scene, t, row) {
-  const { n } = scene;
-  const [q, qd, booked] = [row.subarray(0, n), row.subarray(n, 2 * n), row.subarray(2 * n)];
-  return {
-    t,
-    q,
-    qd,
-    booked,
-    get places() {
-      return pairs(scene.positions(t, q));
-    },
-    get forces() {
-      return pairs(scene.reactions(t, q, qd));
-    },
-    get energies() {
-      return scene.energies(t, q, qd);
-    },
-  };
+/** What a run of the core is at a time: made in thousands, so that most is computed when asked for. */
+class Moment {
+  constructor(scene, t, row) {
+    this.scene = scene;
+    this.t = t;
+    this.q = row.subarray(0, scene.n); // rad
+    this.qd = row.subarray(scene.n, 2 * scene.n); // rad/s
+    this.row = row;
+  }
+  /** What the ledger has booked, J. */
+  get booked() {
+    return this.row.subarray(2 * this.scene.n);
+  }
+  /** The pivot, the joints and the tip, m. */
+  get places() {
+    return pairs(this.scene.positions(this.t, this.q));
+  }
+  /** The force on each link at its joint, N. */
+  get forces() {
+    return pairs(this.scene.reactions(this.t, this.q, this.qd));
+  }
+  /** Kinetic and potential energy, J. */
+  get energies() {
+    return this.scene.energies(this.t, this.q, this.qd);
+  }
 }
 
 /** What the page plays: a run from `begin` to `end`, which may be before it. */
@@ -78,7 +81,7 @@ export class LiveRun extends Played {
     this.run = run;
     const down = new Float64Array(2 * this.n).fill(Math.PI / 2, 0, this.n);
     /** The energy of the chain hanging at rest at the start, J. */
-    this.hanging = momentOf(run.scene, this.begin, down).energies[1];
+    this.hanging = new Moment(run.scene, this.begin, down).energies[1];
   }
   free() {
     this.run.free();
@@ -92,7 +95,7 @@ export class LiveRun extends Played {
     const rows = this.run.at(inside);
     const size = this.run.dimension;
     const row = (k) => rows.subarray(k * size, (k + 1) * size);
-    return inside.map((t, k) => momentOf(this.run.scene, t, row(k)));
+    return inside.map((t, k) => new Moment(this.run.scene, t, row(k)));
   }
 }
 
