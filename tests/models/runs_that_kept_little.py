@@ -12,7 +12,7 @@ import pendcore as pc
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from pendcore.plotting.stage import Choices, Stage
+from pendcore.plotting.stage import Film, Stage
 
 TEXTBOOK = pc.Scene.textbook()
 STOP = 1.9
@@ -118,7 +118,7 @@ def stage(
 ) -> Stage:
     """Return a film's picture; the size is in inches."""
     called = names or [""] * len(runs)
-    return Stage(runs, partial(Figure, figsize=size), Choices(**given), called)
+    return Stage(Film(solutions=runs, names=called, **given), partial(Figure, figsize=size))
 
 
 def axes(rows: int = 1) -> Any:

@@ -74,6 +74,10 @@ class Opened:
     def text(self, name):
         return str(self.ask(f"document.getElementById({name!r}).textContent"))
 
+    def state(self, run, t):
+        """Return the angles and rates at a time of a run that the page shows."""
+        return self.ask(f"(({{ q, qd }}) => [...q, ...qd])(pendcorePage.{run}.at({t}))")
+
     def click(self, name):
         self.browser.find_element("id", name).click()
 

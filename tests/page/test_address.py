@@ -92,6 +92,13 @@ def test_every_option_and_effect_that_a_page_can_have_is_known(page):
     assert json.loads(found["text"]) == case
 
 
+@pytest.mark.parametrize("name", ["inf", "-inf"])
+def test_a_name_is_no_number(page, name):
+    (found,) = read(page, address({**page["case"], "name": name}))
+    assert json.loads(found["text"])["name"] == name
+    assert pc.read_case(found["toml"]).name == name
+
+
 def changed(case, path, value):
     """Return a case with another value at the end of a path."""
     made = {"case": deepcopy(case)}

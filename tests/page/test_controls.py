@@ -15,10 +15,10 @@ def tip(page, t):
     """Return where the tip is at a time, in pixels of the window."""
     return page.ask(
         "(() => { const { view, run } = pendcorePage;"
-        f" const p = run.places({t}, run.state({t}));"
+        f" const [x, y] = run.at({t}).places[2];"
         " const { left, top } = view.canvas.getBoundingClientRect();"
-        " return [left + view.center[0] + p[4] * view.pixels,"
-        " top + view.center[1] + p[5] * view.pixels] })()"
+        " return [left + view.center[0] + x * view.pixels,"
+        " top + view.center[1] + y * view.pixels] })()"
     )
 
 
@@ -140,7 +140,7 @@ def test_a_tap_on_a_joint_starts_there_and_the_page_says_so(page, sol):
     page.drag(tip(page, 2))
     q = page.ask("pendcorePage.given.start.q")
     assert q == [*sol(2.0)[:2]]
-    assert page.ask("[...pendcorePage.run.state(0)]") == [*q, 0, 0]
+    assert page.state("run", 0) == [*q, 0, 0]
     assert page.text("bits").startswith("hash ")
 
 
@@ -268,7 +268,7 @@ def test_the_trace_of_a_fast_link_is_round(opened):
         "const { view } = pendcorePage; const draw = view.draw.bind(view);"
         "view.draw = (shown) => { window.path = shown.path; draw(shown) }; pendcorePage.go(2)"
     )
-    path = np.array(page.ask("window.path")).reshape(-1, 2)
+    path = np.array(page.ask("window.path"))
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     assert steps.max() < 0.12  # m: a tenth of a turn in rad at 1 m, and what link 1 adds
 
@@ -294,7 +294,7 @@ def test_two_runs_are_shown_side_by_side(page, sol):
         assert page.ask("document.getElementById('beside').hidden") is False
         assert page.text("other-name") == name
         assert page.ask("document.getElementById('own-name').hidden") is False
-        assert page.ask("[...pendcorePage.other.state(8)]") == run(8.0).tolist()
+        assert page.state("other", 8) == run(8.0).tolist()
         curves = page.ask("pendcorePage.curves.angles.curves")
         assert [(one["name"], one["isDashed"]) for one in curves] == [
             ("q₁, this run", False), ("q₂, this run", False),
@@ -302,7 +302,7 @@ def test_two_runs_are_shown_side_by_side(page, sol):
         ]  # fmt: skip
         assert curves[3]["y"][-1] == pytest.approx(np.degrees(run(8.0)[1]), rel=1e-12)
     page.do("pendcorePage.given.gravity = 1.6; pendcorePage.changed()")
-    assert page.ask("[...pendcorePage.other.state(8)]") == sol(8.0).tolist()
+    assert page.state("other", 8) == sol(8.0).tolist()
     page.enter("#compare", "nothing")
     assert page.ask("document.getElementById('beside').hidden")
 

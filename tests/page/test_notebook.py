@@ -127,8 +127,8 @@ def test_the_widget_tells_python_what_its_reader_does(sol, browser, tmp_path, co
     widget.text = waited(browser, "window.values.text.includes('1.62') && window.values.text")
     assert widget.case["gravity"] == 1.62
     assert widget.case["effect"][0] == {"kind": "viscous_joint", "joint": 2, "damping": 0.05}
-    widget.text = '{"effect": [{"range": ["-inf", 1]}]}'
-    assert widget.case == {"effect": [{"range": [-np.inf, 1]}]}
+    widget.text = 'name = "inf"\n[[effect]]\nrange = [-inf, 1]'
+    assert widget.case == {"name": "inf", "effect": [{"range": [-np.inf, 1]}]}
 
 
 def test_a_widget_without_its_package_says_what_is_missing(sol, monkeypatch):

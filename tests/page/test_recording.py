@@ -23,7 +23,7 @@ def test_an_install_without_the_core_plays_back_and_says_what_is_missing(sol, op
     page.do("pendcorePage.go(2)")
     shown = page.ask("pendcorePage.t")
     assert shown == pytest.approx(2, abs=1 / 60)
-    assert page.ask("[...pendcorePage.run.state(2)]") == pytest.approx([*sol(shown)], abs=1e-5)
+    assert page.state("run", 2) == pytest.approx([*sol(shown)], abs=1e-5)
     assert page.ask("document.querySelector('[role=tablist]').offsetHeight") == 0
     assert page.complaints() == []
     assert "right to 0.1 rad to the end" in page.text("trust")
@@ -37,7 +37,7 @@ def test_the_ledger_of_a_run_is_played_back_where_it_has_one(sol, opened, monkey
     (work,) = page.ask("pendcorePage.curves.work.curves")
     assert work["name"] == "viscous (lost)"
     assert work["y"][-1] == pytest.approx(kept.energy().ledger.viscous[-1], rel=1e-6)
-    assert len(page.ask("[...pendcorePage.run.state(2)]")) == 4
+    assert len(page.state("run", 2)) == 4
     assert opened(sol).ask("document.getElementById('work').hidden") is True
 
 
@@ -52,4 +52,4 @@ def test_functions_of_ones_own_are_played_back(opened):
     run = pc.simulate(pc.Scene.textbook().replace(effects=[brake]), q0=0.5, t_span=(0, 4))
     page = opened(run)
     assert "functions of one's own stay in Python" in page.text("notice")
-    assert page.ask("[...pendcorePage.run.state(4)]") == pytest.approx([*run(4.0)], abs=1e-5)
+    assert page.state("run", 4) == pytest.approx([*run(4.0)], abs=1e-5)

@@ -1022,13 +1022,13 @@ class Solution:
         >>> len([*animation.new_frame_seq()])  # 5 s at 30 frames a second
         151
         """
-        from pendcore.plotting.stage import Choices, animate
+        from pendcore.plotting.stage import Film, animate
 
-        given = Choices(
-            speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
-            horizon=horizon, beside=beside,
+        film = Film(
+            solutions=(self, *others), names=names, speed=speed, fps=fps, trace=trace,
+            reactions=reactions, energy=energy, horizon=horizon, beside=beside,
         )  # fmt: skip
-        return animate((self, *others), names, given)
+        return animate(film)
 
     def to_video(
         self,
@@ -1087,14 +1087,14 @@ class Solution:
         >>> sol.to_video("swing.gif", speed=2).name
         'swing.gif'
         """
-        from pendcore.plotting.stage import Choices
+        from pendcore.plotting.stage import Film
         from pendcore.plotting.video import to_video
 
-        given = Choices(
-            speed=speed, fps=fps, trace=trace, reactions=reactions, energy=energy,
-            horizon=horizon, beside=beside,
+        film = Film(
+            solutions=(self, *others), names=names, speed=speed, fps=fps, trace=trace,
+            reactions=reactions, energy=energy, horizon=horizon, beside=beside,
         )  # fmt: skip
-        return to_video((self, *others), names, path, given, size, progress)
+        return to_video(film, path, size, progress)
 
     def to_html(self, path: str | os.PathLike[str], *, title: str | None = None) -> Path:
         """Write the run as one page with the core inside, which opens from disk; return its path.

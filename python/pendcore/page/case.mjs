@@ -7,10 +7,10 @@
 
 import { knownCase } from "./known_case.mjs";
 
-/** JSON has no infinity, so that it is written as a word. */
+/** JSON has no infinity, so that it is written as a word; a run may have that word as its name. */
 export function parseCase(text) {
-  return JSON.parse(text, (_key, value) =>
-    value === "inf" ? Infinity : value === "-inf" ? -Infinity : value,
+  return JSON.parse(text, (key, value) =>
+    key === "name" ? value : value === "inf" ? Infinity : value === "-inf" ? -Infinity : value,
   );
 }
 

@@ -3,7 +3,6 @@
 import { convention, wrapped } from "./angles.mjs";
 import { linkColor, partColor } from "./canvas.mjs";
 import { Chart } from "./chart.mjs";
-import { forceSizes } from "./runs.mjs";
 import { clamp } from "./simulate.mjs";
 
 const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link turns by this, rad
@@ -11,38 +10,36 @@ const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link t
 /** A whole number as an index. */
 const subscript = (number) => String(number).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)]);
 
-/** What can be drawn of each link, by its number; without one it names that of all links. */
+/**
+ * What can be drawn of each link, by its number; without one it names that of all links. `of` takes
+ * it from a moment of a run.
+ */
 const OF_LINKS = [
   {
     name: (number) => `${convention().letter}${subscript(number)}`,
     unit: "rad",
     isAngle: true,
-    of: (_run, _t, state, i) => convention().angle(state[i]),
+    of: ({ q }, i) => convention().angle(q[i]),
   },
   {
     name: (number) => `${convention().dotted}${subscript(number)}`,
     unit: "rad/s",
-    of: (run, _t, state, i) => convention().rate(state[run.n + i]),
+    of: ({ qd }, i) => convention().rate(qd[i]),
   },
   {
     name: (number) => `force at joint ${number}`.trim(),
     unit: "N",
-    of: (run, t, state, i) => forceSizes(run, t, state)[i],
+    of: ({ forces }, i) => Math.hypot(...forces[i]),
   },
 ];
 
 /** What can be drawn of the whole. */
 const OF_ALL = [
-  { name: "tip x", unit: "m", of: (run, t, state) => run.places(t, state).at(-2) },
-  {
-    name: "tip y, down",
-    unit: "m",
-    isDown: true,
-    of: (run, t, state) => run.places(t, state).at(-1),
-  },
-  { name: "kinetic energy", unit: "J", of: (run, t, state) => run.energies(t, state)[0] },
-  { name: "potential energy", unit: "J", of: (run, t, state) => run.energies(t, state)[1] },
-  { name: "t", unit: "s", isTime: true, of: (_run, t) => t },
+  { name: "tip x", unit: "m", of: ({ places }) => places.at(-1)[0] },
+  { name: "tip y, down", unit: "m", isDown: true, of: ({ places }) => places.at(-1)[1] },
+  { name: "kinetic energy", unit: "J", of: ({ energies }) => energies[0] },
+  { name: "potential energy", unit: "J", of: ({ energies }) => energies[1] },
+  { name: "t", unit: "s", isTime: true, of: ({ t }) => t },
 ];
 
 /** The quantities for a menu: of all links together, then of each link, then of the whole. */
@@ -69,8 +66,8 @@ export class Curves {
   set(run) {
     this.run = run;
     this.#sample();
-    const { times, states } = this;
-    const energies = states.map((state, k) => run.energies(times[k], state));
+    const { times, moments } = this;
+    const energies = moments.map((one) => one.energies);
     const curve = (name, color, rows, of) => ({ name, color, x: times, y: rows.map(of) });
     this.energy.set([
       curve("kinetic", partColor(0), energies, ([T]) => T),
@@ -79,7 +76,7 @@ export class Curves {
     ]);
     const booked = run.accounts.map((account, k) => {
       const name = account.replace(/^-(.*)/, "$1 (lost)");
-      return curve(name, partColor(k), states, (state) => state[2 * run.n + k]);
+      return curve(name, partColor(k), moments, (one) => one.booked[k]);
     });
     this.work.figure.hidden = booked.length === 0;
     this.work.set(booked);
@@ -88,27 +85,27 @@ export class Curves {
   /** Draws the angles of this run, and dashed those of another beside it, if there is one. */
   compare(other, name) {
     const told = convention();
-    const curves = (states, isDashed, suffix) =>
+    const curves = (moments, isDashed, suffix) =>
       Array.from({ length: this.run.n }, (_x, i) => ({
         name: `${told.letter}${subscript(i + 1)}${suffix}`,
         color: linkColor(i),
         x: this.times,
-        y: states.map((state) => (told.angle(state[i]) * 180) / Math.PI),
+        y: moments.map(({ q }) => (told.angle(q[i]) * 180) / Math.PI),
         isDashed,
       }));
-    const own = curves(this.states, false, other ? ", this run" : "");
-    const beside = other ? curves(other.states(this.times), true, `, ${name}`) : [];
+    const own = curves(this.moments, false, other ? ", this run" : "");
+    const beside = other ? curves(other.moments(this.times), true, `, ${name}`) : [];
     this.angles.names[1] = `${told.letter} (deg)`;
     this.angles.set([...own, ...beside]);
     this.#fillMenus();
     this.choose();
   }
 
-  /** Takes some times in each of the run's own steps, the more the faster it is, and its states. */
+  /** Takes some times in each of the run's own steps, the more the faster it is. */
   #sample() {
     const { run } = this;
     const steps = [...run.steps];
-    const rates = run.states(steps).flatMap((state) => [...state.subarray(run.n, 2 * run.n)]);
+    const rates = run.moments(steps).flatMap(({ qd }) => [...qd]);
     /** The largest rate of a link, rad/s. */
     this.fastest = rates.reduce((largest, rate) => Math.max(largest, Math.abs(rate) || 0), 0);
     const span = Math.abs(run.end - run.begin);
@@ -119,7 +116,7 @@ export class Curves {
       return Array.from({ length: parts }, (_x, i) => begin + ((end - begin) * i) / parts);
     });
     this.times.push(run.end);
-    this.states = run.states(this.times);
+    this.moments = run.moments(this.times);
   }
 
   /** The menus keep what was chosen in them, unless a link of it is gone. */
@@ -138,7 +135,7 @@ export class Curves {
 
   /** Draws what the menus say: a curve for each link where a quantity of all links is chosen. */
   choose() {
-    const { run, times, states } = this;
+    const { run, moments } = this;
     const [x, y] = this.menus.map((menu) => this.offered[menu.selectedIndex]);
     this.isOverTime = x.isTime === true;
     const isWrapped = (one) => one.isAngle && !this.isOverTime;
@@ -146,33 +143,34 @@ export class Curves {
       isWrapped(one) ? label.replace(" (", ", within a turn (") : label,
     );
     this.chosen.isDown = y.isDown === true;
-    const value = (one, t, state, i) => {
-      const found = one.of(run, t, state, one.link ?? i);
+    const value = (one, moment, i) => {
+      const found = one.of(moment, one.link ?? i);
       return isWrapped(one) ? wrapped(found) : found;
     };
     const isTogether = x.isTogether || y.isTogether;
     this.pairs = Array.from({ length: isTogether ? run.n : 1 }, (_x, i) => ({
       name: isTogether ? `link ${i + 1}` : "",
       color: linkColor(isTogether ? i : (x.link ?? y.link ?? 0)),
-      at: (t, state) => [x, y].map((one) => value(one, t, state, i)),
+      at: (moment) => [x, y].map((one) => value(one, moment, i)),
     }));
     // What is wrong is no portrait of the motion: the curves end where the run is right no more.
-    const last = times.findLastIndex((t) => this.isOverTime || run.isRight(t)) + 1;
+    const last = moments.findLastIndex(({ t }) => this.isOverTime || run.isRight(t)) + 1;
     this.chosen.set(
       this.pairs.map(({ name, color, at }) => {
-        const points = states.slice(0, last).map((state, k) => [...at(times[k], state), times[k]]);
+        const points = moments.slice(0, last).map((moment) => [...at(moment), moment.t]);
         return { name, color, ...torn(points, [x, y].map(isWrapped)) };
       }),
     );
   }
 
   /** Marks the present, and shades what lies past the time until which the run is right. */
-  draw(t, state) {
+  draw(moment) {
     const { run } = this;
+    const { t } = moment;
     const overTime = { now: t, shade: run.isRight(run.end) ? null : [run.until, run.end] };
     for (const chart of [this.angles, this.energy, this.work]) chart.draw(overTime);
     const points = this.pairs.map(({ color, at }) => {
-      const [x, y] = at(t, state);
+      const [x, y] = at(moment);
       return { x, y, color };
     });
     this.chosen.draw(this.isOverTime ? overTime : { points: run.isRight(t) ? points : [] });

@@ -204,13 +204,15 @@ def _recording(solution: Solution) -> dict[str, Any]:
     losses = energy.ledger.losses if energy.ledger else frozenset()
     entries = dict(energy.ledger or {})
     entries.pop("residual", None)
+    q, qd = np.hsplit(moves.states, 2)
+    columns = {
+        "t": t, "q": q, "qd": qd, "booked": np.reshape([*entries.values()], (-1, len(t))).T,
+        "places": moves.places, "forces": moves.reactions,
+        "energies": np.stack([energy.kinetic, energy.potential], axis=1),
+    }  # fmt: skip
     return {
-        "t": _rounded(t),
-        "states": _rounded(np.column_stack([moves.states, *entries.values()])),
+        "moments": {name: _rounded(column) for name, column in columns.items()},
         "accounts": [f"-{name}" if name in losses else name for name in entries],
-        "places": _rounded(moves.places.reshape(len(t), -1)),
-        "reactions": _rounded(moves.reactions.reshape(len(t), -1)),
-        "energies": _rounded(np.stack([energy.kinetic, energy.potential], axis=1)),
         "hanging": float(solution.scene.energy(begin, down, np.zeros(n))[1]),
         "message": solution.message,
         "success": solution.success,

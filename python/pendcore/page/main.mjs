@@ -8,7 +8,7 @@ import { Chart } from "./chart.mjs";
 import { Controls } from "./controls.mjs";
 import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
-import { coreBytes, forceSizes, LiveRun, Recording } from "./runs.mjs";
+import { coreBytes, LiveRun, Recording } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
 import { clamp, grid, simulateCase } from "./simulate.mjs";
 import { listenToKeys, listenToPointer, listenToWheel, STEP } from "./touch.mjs";
@@ -107,10 +107,9 @@ class Page {
     }
   }
 
-  /** Tells a notebook around the page what it shows. */
+  /** Tells a notebook around the page what it shows, in TOML, which has infinities. */
   tell() {
-    if (window.parent !== window)
-      window.parent.postMessage({ pendcore: writeCase(this.given) }, "*");
+    if (window.parent !== window) window.parent.postMessage({ pendcore: toToml(this.given) }, "*");
   }
 
   /** Runs the case and shows it; a case that is refused throws an error, and all stays as it is. */
@@ -184,7 +183,8 @@ class Page {
   /** The size of a force, N, than which few of the run are larger: arrows are as long as that. */
   #typicalForce() {
     const { run } = this;
-    const sizes = grid(run.begin, run.end, FORCES).flatMap((t) => forceSizes(run, t, run.state(t)));
+    const forces = run.moments(grid(run.begin, run.end, FORCES)).flatMap((one) => one.forces);
+    const sizes = forces.map(([x, y]) => Math.hypot(x, y));
     const sorted = sizes.filter(Number.isFinite).sort((a, b) => a - b);
     return sorted[Math.floor(0.95 * (sorted.length - 1))] || 1;
   }
@@ -196,10 +196,10 @@ class Page {
       badge.textContent = data.hash ? `played back; Python's hash ${data.hash}` : "played back";
       return;
     }
-    const { run, scene } = simulateCase(this.core, this.given);
+    const run = simulateCase(this.core, this.given);
     this.hash = run.hash;
     run.free();
-    scene.free();
+    run.scene.free();
     if (writeCase(this.given) !== original || !data.hash) badge.textContent = `hash ${this.hash}`;
     else if (this.hash === data.hash)
       badge.textContent = `the bits of Python: hash ${this.hash} = ${data.hash}`;
@@ -266,38 +266,36 @@ class Page {
 
   draw() {
     const { run, t, ghost, other } = this;
-    const state = run.state(t);
+    const now = run.at(t);
     this.view.draw({
-      ...this.#shown(run, t),
-      ghost: ghost?.places(ghost.within(t), ghost.state(t)),
+      ...this.#shown(run, now),
+      ghost: ghost?.at(t).places,
       neighbours: byId("neighbours").checked ? this.neighbours : null,
     });
     if (other) {
       Object.assign(this.otherView, { zoom: this.view.zoom, shift: this.view.shift });
-      this.otherView.draw(this.#shown(other, other.within(t)));
+      this.otherView.draw(this.#shown(other, other.at(t)));
     }
     this.#sayTrust();
-    this.curves.draw(t, state);
+    this.curves.draw(now);
     this.cost.draw();
     byId("clock").textContent = `${t.toFixed(2)} s`;
     byId("time").value = String(t);
     const { letter, angle } = convention();
-    const angles = run.lengths.map(
-      (_length, i) => `${letter}${i + 1} ${((angle(state[i]) * 180) / Math.PI).toFixed(1)} degrees`,
-    );
+    const degrees = (q) => ((angle(q) * 180) / Math.PI).toFixed(1);
+    const angles = Array.from(now.q, (q, i) => `${letter}${i + 1} ${degrees(q)} degrees`);
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
 
   /** What the picture of a run shows at a time; it is pale where this page's run is not right. */
-  #shown(run, t) {
-    const state = run.state(t);
-    const places = run.places(t, state);
+  #shown(run, now) {
+    const { t, places } = now;
     return {
       places,
       t,
       lengths: run.lengths,
       isLost: !this.run.isRight(t),
-      forces: byId("reactions").checked ? run.reactions(t, state) : null,
+      forces: byId("reactions").checked ? now.forces : null,
       path: byId("trace").checked ? this.#path(t, run) : null,
     };
   }
@@ -307,7 +305,7 @@ class Page {
     const { least, most, angle } = TRACE_PARTS;
     const parts = clamp((TRACE * this.curves.fastest) / angle, least, most);
     const times = grid(since, t, Math.ceil(parts));
-    return run.states(times).flatMap((state, k) => [...run.places(times[k], state).slice(-2)]);
+    return run.moments(times).map((one) => one.places.at(-1));
   }
 
   play(isPlaying) {

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
+import tomllib
 from html import escape
-from math import inf
 from typing import Any
 
 _WIDGET = """
@@ -64,15 +63,6 @@ def widget_of(text: str, height: int) -> Any:
 
         @property
         def case(self) -> dict[str, Any] | None:
-            return _with_infinities(json.loads(self.text)) if self.text else None
+            return {"effect": [], **tomllib.loads(self.text)} if self.text else None
 
     return PageWidget(page=text, height=height)
-
-
-def _with_infinities(value: Any) -> Any:
-    """Return the same with numbers in the place of the words for infinities."""
-    if isinstance(value, dict):
-        return {name: _with_infinities(one) for name, one in value.items()}
-    if isinstance(value, list):
-        return [_with_infinities(one) for one in value]
-    return {"inf": inf, "-inf": -inf}.get(value, value) if isinstance(value, str) else value

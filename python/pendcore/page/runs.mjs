@@ -11,6 +11,39 @@ export async function coreBytes() {
   return new Response(stream).arrayBuffer();
 }
 
+/** Numbers x, y, x, y, ... as places or forces [x, y]. */
+function pairs(numbers) {
+  const both = (_x, k) => [numbers[2 * k], numbers[2 * k + 1]];
+  return Array.from({ length: numbers.length / 2 }, both);
+}
+
+/** What a run of the core is at a time: made in thousands, so that most is computed when asked for. */
+class Moment {
+  constructor(scene, t, row) {
+    this.scene = scene;
+    this.t = t;
+    this.q = row.subarray(0, scene.n); // rad
+    this.qd = row.subarray(scene.n, 2 * scene.n); // rad/s
+    this.row = row;
+  }
+  /** What the ledger has booked, J. */
+  get booked() {
+    return this.row.subarray(2 * this.scene.n);
+  }
+  /** The pivot, the joints and the tip, m. */
+  get places() {
+    return pairs(this.scene.positions(this.t, this.q));
+  }
+  /** The force on each link at its joint, N. */
+  get forces() {
+    return pairs(this.scene.reactions(this.t, this.q, this.qd));
+  }
+  /** Kinetic and potential energy, J. */
+  get energies() {
+    return this.scene.energies(this.t, this.q, this.qd);
+  }
+}
+
 /** What the page plays: a run from `begin` to `end`, which may be before it. */
 class Played {
   /** Until when it is right, s; null as long as that is not known. */
@@ -31,17 +64,10 @@ class Played {
     const rounding = 1e-9 * Math.abs(this.end - this.begin);
     return this.until === null || this.direction * (t - this.until) <= rounding;
   }
-  /** Angles and rates at a time, from the states that each kind of run has at many. */
-  state(t) {
-    const [row] = /** @type {any} */ (this).states([t]);
-    return row.subarray(0, 2 * this.n);
+  /** What the run is at a time, or at the one of its own that is nearest. */
+  at(t) {
+    return /** @type {any} */ (this).moments([t])[0];
   }
-}
-
-/** The sizes of the forces at the joints of a run, N. */
-export function forceSizes(run, t, state) {
-  const found = run.reactions(t, state);
-  return run.lengths.map((_length, i) => Math.hypot(found[2 * i], found[2 * i + 1]));
 }
 
 /** A run that the core has made: it has a state at any time. */
@@ -50,38 +76,26 @@ export class LiveRun extends Played {
 
   constructor(core, given) {
     // The ledger changes no bit of the motion.
-    const { scene, run } = simulateDense(core, given, { ledger: true });
+    const run = simulateDense(core, given, { ledger: true });
     super(given, run);
-    this.scene = scene;
     this.run = run;
     const down = new Float64Array(2 * this.n).fill(Math.PI / 2, 0, this.n);
     /** The energy of the chain hanging at rest at the start, J. */
-    this.hanging = this.energies(this.begin, down)[1];
+    this.hanging = new Moment(run.scene, this.begin, down).energies[1];
   }
   free() {
     this.run.free();
-    this.scene.free();
+    this.run.scene.free();
   }
   within(t) {
     return clamp(t, Math.min(this.begin, this.end), Math.max(this.begin, this.end));
   }
-  /** Angles, rates and the entries of the ledger at times, a row each. */
-  states(times) {
-    const rows = this.run.at(times.map((t) => this.within(t)));
+  moments(times) {
+    const inside = times.map((t) => this.within(t));
+    const rows = this.run.at(inside);
     const size = this.run.dimension;
-    return times.map((_t, k) => rows.subarray(k * size, (k + 1) * size));
-  }
-  places(t, state) {
-    return this.scene.positions(t, state.subarray(0, this.n));
-  }
-  reactions(t, state) {
-    return this.scene.reactions(t, ...this.#halves(state));
-  }
-  energies(t, state) {
-    return this.scene.energies(t, ...this.#halves(state));
-  }
-  #halves(state) {
-    return [state.subarray(0, this.n), state.subarray(this.n, 2 * this.n)];
+    const row = (k) => rows.subarray(k * size, (k + 1) * size);
+    return inside.map((t, k) => new Moment(this.run.scene, t, row(k)));
   }
 }
 
@@ -90,8 +104,8 @@ export class Recording extends Played {
   isLive = false;
 
   constructor(recorded, given) {
-    super(given, recorded);
-    this.recorded = recorded;
+    super(given, { ...recorded, t: recorded.moments.t });
+    this.columns = Object.entries(recorded.moments);
     this.hanging = recorded.hanging;
   }
   free() {}
@@ -103,16 +117,10 @@ export class Recording extends Played {
   within(t) {
     return this.steps[this.#nearest(t)];
   }
-  states(times) {
-    return times.map((t) => Float64Array.from(this.recorded.states[this.#nearest(t)]));
-  }
-  places(t) {
-    return Float64Array.from(this.recorded.places[this.#nearest(t)]);
-  }
-  reactions(t) {
-    return this.recorded.reactions[this.#nearest(t)];
-  }
-  energies(t) {
-    return this.recorded.energies[this.#nearest(t)];
+  moments(times) {
+    return times.map((t) => {
+      const k = this.#nearest(t);
+      return Object.fromEntries(this.columns.map(([name, column]) => [name, column[k]]));
+    });
   }
 }

@@ -60,11 +60,9 @@ export class SceneView {
     return [this.center[0] + x * this.pixels, this.center[1] + y * this.pixels];
   }
 
-  /** Points x, y, x, y, ... as places on the canvas. */
+  /** Points [x, y], m, as places on the canvas. */
   #places(points) {
-    return Array.from({ length: points.length / 2 }, (_x, k) =>
-      this.#at(points[2 * k], points[2 * k + 1]),
-    );
+    return points.map(([x, y]) => this.#at(x, y));
   }
 
   #axes(width, height, total) {
@@ -113,8 +111,7 @@ export class SceneView {
     const fill = color("force");
     const places = this.#places(points);
     pen.textAlign = "center";
-    for (let k = 0; k + 1 < places.length; ++k) {
-      const [fx, fy] = [forces[2 * k], forces[2 * k + 1]];
+    for (const [k, [fx, fy]] of forces.entries()) {
       const size = Math.hypot(fx, fy);
       if (!(size > 1e-6 * this.typicalForce)) continue;
       const share = (ARROW.longest * size) / this.typicalForce;
@@ -150,7 +147,7 @@ export class SceneView {
     pen.fillStyle = color("teal");
     pen.globalAlpha = alpha;
     for (let k = 0; k < count; ++k) {
-      let [x, y] = places; // of the pivot
+      let [x, y] = places[0]; // of the pivot
       for (let i = 0; i < n; ++i) {
         const angle = angles[(frame * count + k) * n + i];
         x += lengths[i] * Math.cos(angle);

@@ -46,10 +46,10 @@ export function listenToWheel(canvas, page) {
 
 /** The number of the joint near a place, or of the tip; 0 where there is none. */
 function jointNear(page, [x, y]) {
-  const places = page.run.places(page.t, page.run.state(page.t));
+  const { places } = page.run.at(page.t);
   let [nearest, least] = [0, REACH / page.view.pixels];
   for (let i = 1; i <= page.run.n; ++i) {
-    const away = Math.hypot(x - places[2 * i], y - places[2 * i + 1]);
+    const away = Math.hypot(x - places[i][0], y - places[i][1]);
     if (away < least) [nearest, least] = [i, away];
   }
   return nearest;
@@ -78,7 +78,7 @@ export function listenToPointer(canvas, page) {
     page.play(false);
     page.dragged = joint;
     const { start } = page.given;
-    start.q = [...page.run.state(page.t).subarray(0, page.run.n)];
+    start.q = [...page.run.at(page.t).q];
     start.qd = start.qd.map(() => 0);
     page.t = page.run.begin;
     page.changed();
@@ -100,9 +100,9 @@ export function listenToPointer(canvas, page) {
     if (!page.dragged) return;
     const { run, dragged, given } = page;
     const [x, y] = place(event);
-    const places = run.places(run.begin, run.state(run.begin));
+    const [jointX, jointY] = run.at(run.begin).places[dragged - 1];
     const before = given.start.q[dragged - 1];
-    const angle = Math.atan2(y - places[2 * dragged - 1], x - places[2 * dragged - 2]);
+    const angle = Math.atan2(y - jointY, x - jointX);
     const turns = Math.round((before - angle) / (2 * Math.PI));
     given.start.q[dragged - 1] = angle + 2 * Math.PI * turns;
     page.t = run.begin;

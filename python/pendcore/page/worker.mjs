@@ -13,12 +13,12 @@ let core = null;
 
 /** Runs a case, gives the run to `use`, and frees it: a loop leaves no time to clean up after it. */
 function withRun(given, others, use) {
-  const { scene, run } = simulateDense(core, given, others);
+  const run = simulateDense(core, given, others);
   try {
     return use(run);
   } finally {
     run.free();
-    scene.free();
+    run.scene.free();
   }
 }
 

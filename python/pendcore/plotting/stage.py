@@ -40,9 +40,11 @@ _TAIL = 24
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Choices:
-    """What a film shows, and how fast: see `pendcore.Solution.to_video`."""
+class Film:
+    """The runs of a film, what it shows, and how fast: see `pendcore.Solution.to_video`."""
 
+    solutions: Sequence[Solution]
+    names: Sequence[str | None] | None = None
     speed: float = 1.0
     fps: float = 30.0
     trace: float | None = 2.0
@@ -62,13 +64,11 @@ class Choices:
             raise ValueError(f"trace = {float(self.trace)}: {wanted}")
 
 
-def animate(
-    solutions: Sequence[Solution], names: Sequence[str | None] | None, choices: Choices
-) -> FuncAnimation:
+def animate(film: Film) -> FuncAnimation:
     """Return matplotlib's animation; it must be kept as long as it is to move."""
     new_figure = partial(figure_of_pyplot, figsize=(HEIGHT * 16 / 9, HEIGHT))
-    stage = Stage(solutions, new_figure, choices, names)
-    frames, interval = len(stage.times), 1000.0 / choices.fps
+    stage = Stage(film, new_figure)
+    frames, interval = len(stage.times), 1000.0 / film.fps
     return FuncAnimation(stage.figure, stage.show, frames, interval=interval, blit=True)
 
 
@@ -96,32 +96,26 @@ class _Run(NamedTuple):
 class Stage:
     """A figure, and what has to be drawn anew in each of its frames, at ``times``, s, (k,)."""
 
-    def __init__(
-        self,
-        solutions: Sequence[Solution],
-        new_figure: NewFigure,
-        choices: Choices,
-        names: Sequence[str | None] | None,
-    ) -> None:
+    def __init__(self, film: Film, new_figure: NewFigure) -> None:
         """Open a figure once all that can fail is computed."""
-        known = _names_of(solutions, names)
-        self.times = frame_times(solutions, choices.fps, choices.speed)
-        dense = [one.with_dense_output() for one in solutions]
+        known = _names_of(film.solutions, film.names)
+        self.times = frame_times(film.solutions, film.fps, film.speed)
+        dense = [one.with_dense_output() for one in film.solutions]
         moves = [moves_of(one, self.times) for one in dense]
-        limit = choices.horizon
-        ends = [None if limit is None else one.valid_until(limit) for one in solutions]
+        limit = film.horizon
+        ends = [None if limit is None else one.valid_until(limit) for one in film.solutions]
         pairs = zip(dense, ends, strict=True)
         asked = [Request(solution=x, horizon=limit, valid_until=end) for x, end in pairs]
         forces = np.concatenate([one.reactions.reshape(-1, 2) for one in moves])
         full = float(np.percentile(np.hypot(*forces.T), TYPICAL))
         reach = max(total_length(one.scene) for one in dense)
-        arrows = [arrows_of(one.reactions, full, reach) * choices.reactions for one in moves]
+        arrows = [arrows_of(one.reactions, full, reach) * film.reactions for one in moves]
         runs = [_Run(*one) for one in zip(asked, known, moves, arrows, strict=True)]
         with applied(_LETTERING):
             self.figure = new_figure()
-            curves = panels_of(dense, energy=choices.energy, reactions=choices.reactions)
+            curves = panels_of(dense, energy=film.energy, reactions=film.reactions)
             rows = sum(rows for rows, _ in curves)
-            scenes, panels = _layout(self.figure, len(runs), rows, choices)
+            scenes, panels = _layout(self.figure, rows, film)
             self._curves = GrowingCurves(curves, panels, self.times)
             for axis in scenes:
                 _frame_scene(axis, runs, reach)
@@ -130,11 +124,11 @@ class Stage:
                 axis, links = scenes[k % len(scenes)], range(len(one.asked.solution.scene.links))
                 theme = theme_of(axis)
                 colors = [theme.link(i) if len(runs) == 1 else theme.run(k) for i in links]
-                self._chains.append(_Chain(axis, one, colors, choices.trace, self.times))
+                self._chains.append(_Chain(axis, one, colors, film.trace, self.times))
             first = scenes[0]
             how: dict[str, Any] = {"transform": first.transAxes, "va": "top"}
             self._clock = first.text(0.03, 0.97, "", fontsize=CLOCK, **how)
-            told = _told(asked, choices.speed, panels)
+            told = _told(asked, film.speed, panels)
             first.text(0.03, 0.87, told, color=theme_of(first).quiet, **how)
         self._moving: list[Artist] = [one for chain in self._chains for one in chain.artists]
         self._moving += [self._clock, *self._curves.artists]
@@ -244,19 +238,17 @@ class _Chain:
         return np.clip(at + reach * towards, low + edge, high - edge), half
 
 
-def _layout(
-    figure: Figure, count: int, rows: int, choices: Choices
-) -> tuple[list[Axes], list[Axes]]:
-    """Return the axes of ``count`` chains, which fill their part of the figure, and of curves.
+def _layout(figure: Figure, rows: int, film: Film) -> tuple[list[Axes], list[Axes]]:
+    """Return the axes of chains, which fill their part of the figure, and of rows of curves.
 
     In a wide frame the curves stand beside a square stage. In another they stand below, where they
     are asked for; so they do where chains are side by side.
     """
     width, height = figure.get_size_inches()
-    is_wide = width > 1.5 * height and not choices.beside
+    is_wide = width > 1.5 * height and not film.beside
     stage: Any = figure
     panels: list[Axes] = []
-    if is_wide or choices.energy or choices.reactions:
+    if is_wide or film.energy or film.reactions:
         figure.set_layout_engine("constrained")
         shape: dict[str, Any] = {"nrows": 2, "height_ratios": [2, rows]}
         if is_wide:
@@ -265,7 +257,7 @@ def _layout(
         panels = list(beside.subplots(rows, 1, squeeze=False, sharex=True)[:, 0])
         for axis in panels:
             keep_style(axis)
-    columns = count if choices.beside else 1
+    columns = len(film.solutions) if film.beside else 1
     return [stage.add_axes((k / columns, 0.0, 1 / columns, 1.0)) for k in range(columns)], panels
 
 

@@ -20,9 +20,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from pendcore import Solution
 from pendcore.messages import Progress, reporting, warn, whole_file
-from pendcore.plotting.stage import HEIGHT, Choices, Stage
+from pendcore.plotting.stage import HEIGHT, Film, Stage
 
 Pixels = npt.NDArray[np.uint8]
 
@@ -36,10 +35,8 @@ _GIF_TICK = 10
 
 
 def to_video(
-    solutions: Sequence[Solution],
-    names: Sequence[str | None] | None,
+    film: Film,
     path: str | os.PathLike[str],
-    choices: Choices,
     size: tuple[int, int] | None = None,
     progress: Progress = None,
 ) -> Path:
@@ -55,15 +52,15 @@ def to_video(
             f"ffmpeg is not installed, and an MP4 needs it: {target} is written instead "
             "(Debian: ffmpeg; pip: imageio-ffmpeg)"
         )
-    if kind == ".gif" and choices.fps > _MOST_GIF_RATE:
+    if kind == ".gif" and film.fps > _MOST_GIF_RATE:
         raise ValueError(
-            f"fps = {choices.fps}: must be at most {_MOST_GIF_RATE:g} (1/s) in a GIF: browsers "
+            f"fps = {film.fps}: must be at most {_MOST_GIF_RATE:g} (1/s) in a GIF: browsers "
             "show shorter frames too slowly"
         )
     width, height = _even_size(SIZES[kind] if size is None else size)
     dpi = min(height, 9 / 16 * width) / HEIGHT
     new_figure = partial(Figure, figsize=(width / dpi, height / dpi), dpi=dpi)
-    stage = Stage(solutions, new_figure, choices, names)
+    stage = Stage(film, new_figure)
     frames = range(len(stage.times))
     if kind == ".gif" and len(frames) > _MOST_GIF_FRAMES:
         raise ValueError(
@@ -74,10 +71,10 @@ def to_video(
     with drawing as report, whole_file(target) as file:
         pictures = _pictures(stage, frames, report)
         if kind == ".mp4":
-            _write_mp4(pictures, str(ffmpeg), file, (width, height), choices.fps)
+            _write_mp4(pictures, str(ffmpeg), file, (width, height), film.fps)
         else:
             samples = _pictures(stage, frames[:: max(len(frames) // _SAMPLES, 1)])
-            _write_gif(samples, pictures, file, choices.fps)
+            _write_gif(samples, pictures, file, film.fps)
     return target
 
 
