@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "arithmetic/extrapolated_slope.hpp"
 #include "dynamics/contact/impact_laws.hpp"
 #include "dynamics/kinematics.hpp"
 #include "effects/behaviour.hpp"
@@ -36,16 +35,6 @@ EquationsOfMotion equations_in_force(const Scene& scene, const EquationsOfMotion
   }
   here.held_joints->restore(*here.effects, run.held_joints->saved_state(), false);
   return here;
-}
-
-/// The torque that holds a joint in a scene, with the modes and the holds of a run.
-double holding_torque(const Scene& scene, const EquationsOfMotion& run, double t, const Vector& y,
-                      int joint) {
-  const EquationsOfMotion here = equations_in_force(scene, run);
-  const std::size_t n = scene.links.size();
-  std::vector<double> torques(n);
-  here.held_joints->torques(here, t, y.data(), y.data() + n, torques.data());
-  return torques[joint];
 }
 
 }  // namespace
@@ -108,6 +97,7 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   const HeldJoints& joints = *equations_.equations().held_joints;
   const double natural = joints.natural_speed();
   const double size = std::max({largest(f), largest(f_after), natural * natural});
+  // So it is where a joint is let go, at the end of the range of torques that hold it.
   const bool is_continuous = !change.jumped && largest(f_after - f) <= rounding_of_rates * size;
   const bool is_again =
       std::abs(change.t - last_) <= joints.shortest_moment(change.t) && !follows_the_last(change);
@@ -286,8 +276,7 @@ Vector Saltation::change_of(const JointGuard& guard, const Matrix& changes) cons
 std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& change, const Vector& f,
                                                        const Matrix& changes) {
   const JointGuard& guard = *change.guard;
-  if (!guard.is_linear()) return crossing_of_torque(change, f, changes);
-  if (guard.kind == Kind::law) return std::nullopt;
+  if (guard.kind == Kind::law || !guard.is_linear()) return std::nullopt;
   const int j = guard.joint;
   const auto& [offset, on_phi, on_phid] = guard.linear;
   const double rate = relative(f.data(), j + 1);
@@ -299,58 +288,6 @@ std::optional<Saltation::Crossing> Saltation::crossing(const WatchedChange& chan
   // Without its stop, the joint would turn back after this angle.
   const double beyond = 0.5 * rate * rate / (on_phi * acceleration);
   found.grazes = rate == 0.0 || (beyond > 0.0 && beyond < little);
-  return found;
-}
-
-/// The torque that holds a joint, by extrapolated differences: rare, and of few digits anyway.
-std::optional<Saltation::Crossing> Saltation::crossing_of_torque(const WatchedChange& change,
-                                                                 const Vector& f,
-                                                                 const Matrix& changes) {
-  const int j = change.guard->joint;
-  const double sign = change.guard->kind == Kind::most_torque ? -1.0 : 1.0;
-  const Scene& scene = equations_.scene();
-  const EquationsOfMotion& run = equations_.equations();
-  const Vector y = View(change.before.data(), 2 * n_);
-  const auto torque = [&](double t, const Vector& at) {
-    return holding_torque(scene, run, t, at, j);
-  };
-  const double here = torque(change.t, y);
-  const double size = run.held_joints->torque_size(j);
-  const double speed = run.held_joints->natural_speed();
-
-  // The steps are small beside a radian, and beside what the chain turns by in the meantime.
-  const auto step_along = [&](const Vector& direction) {
-    return 0x1p-4 / std::max(largest(direction.head(n_)), largest(direction.tail(n_)) / speed);
-  };
-  Crossing found{.by_name = Vector::Zero(k_), .slope = 0.0, .grazes = false};
-  const double moment = std::min(step_along(f), 0x1p-4 / speed);
-  const auto in_time = extrapolated_slope(
-      here, [&](double h) { return torque(change.t + h, y + h * f); }, moment, size);
-  if (!in_time) return std::nullopt;
-  found.slope = sign * *in_time;
-  found.grazes = std::abs(found.slope) <= little * size * speed;
-  for (Eigen::Index column = 0; column < k_; ++column) {
-    const Vector direction = changes.col(column);
-    if (largest(direction) == 0.0 || !direction.allFinite()) continue;
-    const auto slope = extrapolated_slope(
-        here, [&](double h) { return torque(change.t, y + h * direction); }, step_along(direction),
-        size);
-    if (!slope) return std::nullopt;
-    found.by_name[column] = sign * *slope;
-  }
-  for (std::size_t which = 0; which < equations_.parameters().size(); ++which) {
-    const auto& parameter = equations_.parameters()[which];
-    if (!changes.col(parameter.column).allFinite()) continue;
-    const double value = parameter.value;
-    const auto changed = [&](double h) {
-      const Scene there = equations_.choice().changed(scene, which, value + h);
-      return holding_torque(there, run, change.t, y, j);
-    };
-    const double step = value == 0.0 ? 0x1p-4 : std::ldexp(1.0, std::ilogb(value) - 5);
-    const auto slope = extrapolated_slope(here, changed, step, size);
-    if (!slope) return std::nullopt;
-    found.by_name[parameter.column] += sign * *slope + parameter.supports[j].friction;
-  }
   return found;
 }
 

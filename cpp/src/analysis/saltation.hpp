@@ -67,8 +67,6 @@ class Saltation {
   Vector change_of(const JointGuard& guard, const Matrix& changes) const;
   std::optional<Crossing> crossing(const WatchedChange& change, const Vector& f,
                                    const Matrix& changes);
-  std::optional<Crossing> crossing_of_torque(const WatchedChange& change, const Vector& f,
-                                             const Matrix& changes);
   void take_laws(const WatchedChange& change, Matrix& changes);
   bool follows_the_last(const WatchedChange& change) const;
   std::string border(const WatchedChange& change);

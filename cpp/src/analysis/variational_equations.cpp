@@ -147,7 +147,6 @@ std::vector<JointSupport> slopes_of(const Scene& scene, const ParameterChoice& c
     ahead = std::isfinite(ahead - before) ? (ahead - before) / (2.0 * h) : 0.0;
   };
   for (std::size_t j = 0; j < slopes.size(); ++j) {
-    take(slopes[j].friction, behind[j].friction);
     for (Stop JointSupport::* const stop : {&JointSupport::lower, &JointSupport::upper}) {
       take((slopes[j].*stop).angle, (behind[j].*stop).angle);
       take((slopes[j].*stop).restitution, (behind[j].*stop).restitution);
