@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pendcore as pc
 import pytest
-from models.slopes_of_runs import assert_slopes
+from slopes_of_runs import assert_slopes
 
 E, V = pc.effects, pc.events
 ROD = pc.Link(mass=1.0, length=1.0)

@@ -9,7 +9,7 @@ import pendcore as pc
 import pytest
 from derivatives.campaign import ALLOWED, judged
 from described_scenes import scene_of
-from models.slopes_of_runs import assert_slopes
+from slopes_of_runs import assert_slopes
 from reference.newton_euler import Body
 
 E = pc.effects
