@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pendcore.cost.point import Point, duration, front, seconds_at
 from pendcore.cost.runs import line_style
 from pendcore.messages import as_json, positive, whole_file
-from pendcore.plotting import Theme, as_drawn, grid, legend_above, one_axes, theme_of
+from pendcore.plotting import Theme, as_drawn, grid, legend_above, new_axes, one_axes, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 UNITS = ((1e-4, 1e6, "\N{MICRO SIGN}s"), (0.1, 1e3, "ms"), (inf, 1.0, "s"))
 """The unit of times in a figure: below so many s, how many make one s, its name."""
+FIGURE_SIZE = (7.6, 4.6)
+"""Its width and height, inches."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -154,7 +156,7 @@ class AccuracyCost:
         """
         if y not in ("time", "nfev"):
             raise ValueError(f'y = {y!r}: must be "time" or "nfev"')
-        axis = one_axes(ax, (7.6, 4.6))
+        axis = one_axes(ax, FIGURE_SIZE)
         theme = theme_of(axis)
         best = self.pareto()
         drawn = [p for p in self.points if not p.failure and p.error > 0]
@@ -208,8 +210,9 @@ def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
     """Draw a sweep into a file; the suffix says which kind (png, pdf, svg, ...)."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.6, 4.6), layout="constrained")
-    cost.plot(figure.subplots())
+    (axes,) = new_axes(FIGURE_SIZE, new_figure=Figure)
+    cost.plot(axes)
+    figure: Any = axes.figure
     figure.savefig(path, dpi=160)
 
 
