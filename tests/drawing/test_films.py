@@ -246,7 +246,8 @@ def test_what_cannot_be_animated_opens_no_figure(sol, given):
 
 
 def test_an_animation_draws_its_frames(sol):
-    animation = sol.animate(sol, names=("one", "again"), energy=True)
+    animation = sol.animate(sol, names=("one", "again"), energy=True, fps=30)
+    assert animation._interval == pytest.approx(1000 / 30)  # ms
     named = [x.get_text() for x in animation._func(10) if isinstance(x, Text)]
     assert named == ["one", "again", "t = 0.33 s"]
     animation._draw_was_started = True

@@ -116,6 +116,9 @@ def test_pages_have_the_same_colours():
     light, dark = told.split("@media (prefers-color-scheme: dark)")
     assert f"--link-2: {LIGHT.blue};" in light
     assert f"--link-2: {DARK.blue};" in dark
+    assert dark.startswith(" {\n:root {\n")  # the query holds a rule
+    chosen = css_variables("html[data-theme=dark]")
+    assert chosen.partition("\nhtml[data-theme=dark] {\n")[2].count(f"--link-2: {DARK.blue};") == 1
 
 
 RUN = pc.simulate(
