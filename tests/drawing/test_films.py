@@ -109,6 +109,22 @@ def test_no_text_of_a_film_is_cut_off(sol):
                     assert (box.max <= film.figure.bbox.max + 1).all(), (given, k, text)
 
 
+def test_forces_are_written_off_the_rods_where_there_is_room(sol):
+    fast = pc.simulate(sol.scene, (0, 5), [-0.3, -0.8])
+    film = stage(fast, reactions=True)
+    film.figure.canvas.draw()
+    lies_on_a_rod = []
+    for k in range(0, len(film.times), 10):
+        ends = fast.scene.positions(film.times[k], fast(film.times[k])[:2])
+        for text in film.show(k):
+            if isinstance(text, Text) and text.get_text().endswith(" N") and text.get_visible():
+                rods = np.linspace(ends[:-1], ends[1:], 30).reshape(-1, 2)
+                box, places = text.get_window_extent(), text.axes.transData.transform(rods)
+                lies_on_a_rod.append(any(box.contains(x, y) for x, y in places))
+    assert len(lies_on_a_rod) > 30
+    assert np.mean(lies_on_a_rod) < 0.1
+
+
 def test_names_stand_beside_their_tips_and_not_on_each_other(sol):
     film = stage(sol, sol, sol, names=("one", "two", "three"))
     texts = [x for x in film.show(20) if isinstance(x, Text)][:3]

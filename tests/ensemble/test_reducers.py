@@ -115,6 +115,8 @@ def test_several_reducers_at_once_have_the_numbers_of_each_alone(workers):
         assert np.isfinite(found[name][0]).all()
         assert np.isnan(found[name][5]).all()
     assert "drift: in 5 of 6" in str(found)
+    varied = pc.ensemble(BOOK, q0=0.5, t_span=(0, 1), vary={"gravity": [9.0, 9.8]})
+    assert "\nvaried: gravity" in str(varied)
 
 
 def numbers(whole, member, names):

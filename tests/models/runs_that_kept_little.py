@@ -77,6 +77,7 @@ def resumed_after_a_break(run: pc.Solution) -> pc.Solution:
 
 
 EVENT, BREAK = {"events": [BOTTOM]}, {"max_steps": 40}
+CAP: dict[str, Any] = {"max_steps": 5, "on_failure": "ignore"}
 RUNS: dict[str, Pair] = {
     "dense": alike(TEXTBOOK, {}),
     "times": alike(TEXTBOOK),
@@ -93,6 +94,10 @@ RUNS: dict[str, Pair] = {
     "resumed past events": (
         lambda _: resumed_twice(few(TEXTBOOK, **EVENT)),
         lambda: resumed_twice(simulate(TEXTBOOK, **EVENT)),
+    ),
+    "broken off past events": (
+        lambda _: resumed_twice(few(TEXTBOOK, **EVENT)).resume(10.0, **CAP),
+        lambda: resumed_twice(simulate(TEXTBOOK, **EVENT)).resume(10.0, **CAP),
     ),
     "resumed to a later end": (
         lambda _: simulate(TEXTBOOK, store="end", t_span=(0, 4)).resume(10.0),

@@ -194,6 +194,7 @@ def case(**changes):
 LOCKED = pc.Scene(links=[ROD, ROD], effects=[fx.Lock(2, angle=0.0)])
 THREE = np.zeros((2, 3))
 TYPE_ERRORS = [
+    ("scene = 'textbook': must be a pendcore.Scene", lambda: pc.ensemble("textbook", (0, 1), 0.5)),
     (" ... tolerance", lambda: simulate(tolerance=1e-9)),
     (" ... massa", lambda: pc.Link(mass=1, length=1, massa=1)),
     (" ... 'm'", lambda: pc.Link(mass=1, length=1, m=1)),
