@@ -48,6 +48,7 @@ def test_a_class_shows_its_parameters_in_signature_docstring_and_match_args(kind
     signature = inspect.signature(cls)
     assert [*signature.parameters] == names == [*cls.__match_args__]
     assert cls.__module__ == "pendcore.effects"
+    assert "\nRaises\n------\nValueError, TypeError\n" in cls.__doc__
     for parameter in cls.description.parameters:
         assert f"\n{parameter.name} : " in cls.__doc__
         argument = signature.parameters[parameter.name]

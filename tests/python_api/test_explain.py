@@ -121,6 +121,7 @@ def test_the_start_is_one_more_place_to_look_from():
 def test_without_gravity_nothing_has_a_rate_and_no_pose_is_stable_or_unstable():
     free = rods(2, gravity=0.0).explain()
     assert (free.stiffest_rate, free.first_step) == (0.0, None)
+    assert "stiffest rate   0 1/s, about the equilibria" in repr(free)
     assert "first step      nothing is known here to choose it by" in repr(free)
     equilibria = rods(1, gravity=0.0).explain(q=[0.3]).equilibria
     assert {x.stability for x in equilibria} == {"indifferent"}
