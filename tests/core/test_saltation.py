@@ -9,8 +9,8 @@ import pendcore as pc
 import pytest
 from derivatives.campaign import ALLOWED, judged
 from described_scenes import scene_of
-from slopes_of_runs import assert_slopes
 from reference.newton_euler import Body
+from slopes_of_runs import assert_slopes
 
 E = pc.effects
 ROD = pc.Link(mass=1.0, length=1.0)

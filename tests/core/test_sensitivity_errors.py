@@ -50,7 +50,9 @@ def test_a_run_to_an_error_has_the_derivatives_of_its_own_steps() -> None:
     plain = pc.simulate(BUMPY, **START, **how)
     np.testing.assert_array_equal(plain.t, sol.t)
     np.testing.assert_array_equal(plain.sensitivities, sol.sensitivities)
-    with pytest.raises(ValueError, match=r'"lnk\[1\].*others are q0\[i\], qd0\[i\], torque') as told:
+    with pytest.raises(
+        ValueError, match=r'"lnk\[1\].*others are q0\[i\], qd0\[i\], torque'
+    ) as told:
         pc.simulate(BUMPY, (0, 1), 0.3, error=1e-8, sensitivities=["lnk[1].mass"])
     assert not hasattr(told.value, "solution")  # nothing has run by then
 
