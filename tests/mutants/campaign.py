@@ -87,7 +87,9 @@ def main(arguments: list[str] | None = None) -> int:
         outcome = tested(number + 1, mutant)
         seconds = round(time.monotonic() - start, 1)
         found = {"outcome": outcome.what, "by": outcome.by, "seconds": seconds}
-        return {"number": number, **asdict(mutant), **found}
+        told = asdict(mutant)
+        del told["start"], told["end"]  # the draw has them
+        return {"number": number, **told, **found}
 
     if asked.only is not None:
         print(json.dumps(tried(asked.only, mutants[asked.only]), indent=1))
