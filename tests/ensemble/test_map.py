@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,9 @@ def test_a_map_of_flips(tmp_path, capsys):
     assert run(tmp_path, "--count", "16") == 0
     told = capsys.readouterr().out
     assert "first_event over q0_deg[1] and q0_deg[2], t = 0 to 30 s" in told
-    assert "were not needed: the energy does not suffice" in told
+    (needless,) = re.findall(r"\n(\d+) were not needed: the energy does not suffice", told)
+    (runs,) = re.findall(r"\nruns: (.*)\n", told)
+    assert int(needless) + sum(int(count) for count in re.findall(r"\d+", runs)) == 16 * 16
     assert (tmp_path / "summary.txt").read_text() == told
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     with np.load(tmp_path / "map.npz") as found:
