@@ -154,11 +154,12 @@ def test_a_strip_has_a_pose_and_its_time_for_each_time(sol):
     assert pose - pose[0] == pytest.approx(true - true[0], abs=1e-6)
 
 
-def test_a_strip_fills_the_width_of_its_figure(sol):
+def test_a_strip_fills_its_figure(sol):
     for t in (None, [0.0, 1.5, 4.0]):
         axis = plot(sol, "strip", None, {"t": t}, {}, new_figure=Figure)[0].axes
         axis.figure.draw_without_rendering()
         assert axis.get_tightbbox().width > 0.9 * axis.figure.bbox.width
+        assert axis.get_tightbbox().height > 0.8 * axis.figure.bbox.height
 
 
 def test_the_forces_on_a_free_body_are_its_mass_times_its_acceleration():
