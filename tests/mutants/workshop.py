@@ -67,6 +67,7 @@ class Workshop:
         self.in_build = dict(mutants)
         self.environment = os.environ | {
             "PYTHONPATH": str(SITE), "MPLBACKEND": "Agg", "OPENBLAS_NUM_THREADS": "1",
+            "PYTEST_DEBUG_TEMPROOT": str(PLACE),  # others' runs of pytest clean up there
         }  # fmt: skip
         if not (SOURCE / ".git").exists():
             shutil.rmtree(PLACE, ignore_errors=True)
@@ -253,8 +254,9 @@ class Place:
         self.site = self.folder / "site"
         shutil.rmtree(self.folder, ignore_errors=True)
         shutil.copytree(SITE, self.site)
+        environment = workshop.environment | {"PYTEST_DEBUG_TEMPROOT": str(self.folder)}
         self.server = subprocess.Popen(
-            [sys.executable, SERVER], cwd=SOURCE, env=workshop.environment, text=True,
+            [sys.executable, SERVER], cwd=SOURCE, env=environment, text=True,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         )  # fmt: skip
 
