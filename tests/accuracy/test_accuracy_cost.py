@@ -249,6 +249,17 @@ def test_interrupted_it_hands_over_what_it_has(book, limit):
     plt.gcf().draw_without_rendering()
 
 
+def test_a_command_that_is_interrupted_before_it_has_a_point_says_so(tmp_path, monkeypatch, capsys):
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("pendcore.cli.cost.accuracy_cost", stop)
+    assert main(["cost"]) == 1
+    assert capsys.readouterr().err.endswith("pendcore cost: interrupted\n")
+    assert not list(tmp_path.iterdir())
+
+
 def test_progress_only_grows_and_what_looks_wrong_is_said_once():
     seen = []
     with pytest.warns(pc.PendcoreWarning) as caught:
