@@ -38,14 +38,13 @@ class VariationalEquations {
   struct Parameter {
     Eigen::Index column;  ///< of its change
     double value;
-    std::vector<JointSupport> supports;  ///< the slopes of friction, angles and restitution
+    std::vector<JointSupport> supports;  ///< the slopes of the angles and restitution of stops
   };
 
   int links() const { return n_; }
   const Scene& scene() const { return scene_; }
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<Parameter>& parameters() const { return parameters_; }
-  const ParameterChoice& choice() const { return choice_; }  ///< the same, in the same order
   /// The numbers of the scene along them, in the laws that are in force.
   const std::vector<Mechanism<AlongParameters>>& mechanisms() const { return mechanisms_; }
   const MechanismAlong& mechanism_along() const { return *along_; }
