@@ -40,7 +40,7 @@ CPP_FLOW = {
 ALL_OF_IT = "pendcore.hpp"
 """The header that includes the whole door: for users, and for WebAssembly."""
 
-# The door's headers are flat; each belongs to a stage.
+# Each of the door's headers belongs to a stage.
 STAGE_OF_PUBLIC_HEADER = {
     **dict.fromkeys(["descriptor.hpp"], "text"),
     **dict.fromkeys(["vector.hpp"], "arithmetic"),

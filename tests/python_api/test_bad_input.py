@@ -159,6 +159,7 @@ OPTIONS_OF_A_RUN = [
     ({"method": "s\udcff"}, r"method = 's\udcff': must be"),
     ({"store": "all"}, """store = 'all': must be "dense", "steps", "times" or "end\""""),
     ({"store": 1}, "store = 1: "),
+    ({"q0": [1, 2, 0, 0]}, "q0: has 4 numbers: must have 2, ... angles are q0, rates qd0"),
     ({"store": "s\udcff"}, r"store = 's\udcff': must be"),
     ({"store": "times"}, 't_eval: none given: store = "times" keeps'),
     ({"scene": "textbook"}, "scene = 'textbook': must be a pendcore.Scene"),
@@ -168,6 +169,7 @@ OPTIONS_OF_A_RUN = [
     ({"rtoll": 1e-6}, "simulate has no parameter 'rtoll': did you mean 'rtol'?"),
     ({"tspan": (0, 1)}, "simulate has no parameter 'tspan': did you mean 't_span'?"),
     ({"tend": 3}, "simulate has no parameter 'tend': did you mean 't_span'?"),
+    ({"dense_output": True}, "simulate ... 'dense_output': did you mean 'store'?"),
     *[({name: below(one.range)}, f"{name} = {below(one.range)} ... : must be {one.range}")
       for name, one in OPTIONS.items() if one.range],
     ({"xyzzy": 1}, "simulate has no parameter 'xyzzy': known are scene, t_span, q0, qd0, "),

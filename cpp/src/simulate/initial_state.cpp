@@ -21,7 +21,10 @@ namespace {
 
 void check_numbers(const char* name, std::span<const double> values, std::size_t n,
                    const char* unit) {
-  require_size(name, values, n, ", one for each link");
+  const bool whole_state = values.size() == 2 * n;
+  require_size(
+      name, values, n,
+      whole_state ? ", one for each link; angles are q0, rates qd0" : ", one for each link");
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(values[i])) {
       refuse(std::string(name) + "[" + std::to_string(i) + "]", values[i], unit);

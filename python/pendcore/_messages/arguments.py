@@ -20,7 +20,10 @@ import numpy.typing as npt
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 
-OTHER_NAMES = {"t_span": ("t_end", "t_max", "t_stop", "t_final", "duration")}
+OTHER_NAMES = {
+    "t_span": ("t_end", "t_max", "t_stop", "t_final", "duration"),
+    "store": ("dense_output",),
+}
 """Our names of parameters, and those of other programs for them; `_` may be missing."""
 
 

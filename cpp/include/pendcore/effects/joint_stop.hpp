@@ -39,8 +39,7 @@ struct JointStop {
       parameter(&JointStop::range, {.name = "range",
                                     .symbol = "(lo, hi)",
                                     .unit = "rad",
-                                    .sentence = "angles of the joint where the stops are; -inf or "
-                                                "inf where there is none",
+                                    .sentence = "angles of the joint where the stops are",
                                     .range = Range::number,
                                     .required = true,
                                     .components = {"lower", "upper"}}),
