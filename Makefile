@@ -227,7 +227,8 @@ PARTS ?= core package
 COUNT ?= 200
 define CAMPAIGN_mutants
 for part in $(PARTS); do \
-    PYTHONPATH=tests python -m mutants.campaign $$part --count $(COUNT) --seed $(SEED) || exit 1; \
+    PYTHONPATH=tests python -m mutants.campaign $$part --count $(COUNT) \
+        $(if $(filter file,$(origin SEED)),,--seed $(SEED)) || exit 1; \
 done
 endef
 

@@ -81,6 +81,8 @@ def test_a_rod_is_fastest_just_before_and_just_after_it_strikes_its_stop(name: s
     right = np.array([at_stop, before, after])[:, : len(names)]
     np.testing.assert_allclose(found.sensitivities[GREATEST], right[:2], rtol=0, atol=1e-9)
     np.testing.assert_allclose(found.sensitivities[LEAST, RATE], right[2], rtol=0, atol=1e-9)
+    at_start = [0, 0, 1, 0, 0][: len(names)]
+    np.testing.assert_allclose(found.sensitivities[LEAST, ANGLE], at_start, rtol=0, atol=1e-9)
     np.testing.assert_allclose(found.values[:, RATE], [-e * rate, rate], rtol=1e-12)
     assert (found.t[LEAST, RATE] == found.t[GREATEST, RATE]) == (e > 0)
 

@@ -122,6 +122,12 @@ BREAKS: dict[str, tuple[pc.Scene, Any, Any, list[str]]] = {
         pc.Scene(links=[ROD, ROD], gravity=0.0, effects=[E.DryJointFriction(joint=1, coulomb=1.2)]),
         (0, 0.6), [0.0, 0.0, 0.0, 2.0], ["q0[2]", "qd0[2]"],
     ),
+    "a light hand that friction lets go beside a stiff joint": (
+        pc.Scene(links=[pc.Link(mass=10.0, length=1.0), pc.Link(mass=0.01, length=0.03)], effects=[
+            E.TorsionalSpring(joint=1, stiffness=1e4, rest_angle=1.2),
+            E.DryJointFriction(joint=2, coulomb=0.01978),
+        ]), (0, 0.0908), [0.96037, 0.3, 0.0, 0.0], ["q0[1]"],
+    ),
     "back in time over the points of a table": (
         pc.Scene(links=[ROD, ROD], effects=[E.Motor(joint=1, table=RAMP)]),
         (1.2, 0.1), [0.5, 0.2, 0.3, 1.0], ["q0[1]", "gravity"],
@@ -154,7 +160,10 @@ BREAKS: dict[str, tuple[pc.Scene, Any, Any, list[str]]] = {
 
 @pytest.mark.parametrize("case", BREAKS)
 def test_derivatives_where_laws_change_are_the_slopes_of_runs(case: str) -> None:
-    """Also what only looks like a coincidence has derivatives; over 2e-5 rad, it might be one."""
+    """Also what only looks like a coincidence has derivatives; over 2e-5 rad, it might be one.
+
+    Beside a stiff joint, friction holds up to 64 eps 1e4 N m, here 7e-9 of itself, too long.
+    """
     scene, span, start, names = BREAKS[case]
     sol = pc.simulate(scene, span, *np.split(np.array(start), 2), store="end", sensitivities=names,
                       **EXACTLY)  # fmt: skip
@@ -162,7 +171,9 @@ def test_derivatives_where_laws_change_are_the_slopes_of_runs(case: str) -> None
     def end(there: pc.Scene, y: list[float]) -> Any:
         return pc.simulate(there, span, *np.split(np.array(y), 2), store="end", **EXACTLY).y[:, -1]
 
-    step, atol = (1e-6, 1e-5) if "a little before" in case else (1e-4, 2e-8)
+    by = {"an impact a little before a weak load jumps": (1e-6, 1e-5),
+          "a light hand that friction lets go beside a stiff joint": (1e-5, 7e-9)}  # fmt: skip
+    step, atol = by.get(case, (1e-4, 1e-9))
     assert_slopes(sol.sensitivities[-1], end, scene, start, names, atol=atol, step=step)
 
 

@@ -56,7 +56,7 @@ def exact(
     return np.array(found)
 
 
-@pytest.mark.parametrize(("n", "acting"), [(1, ACTING), (2, ACTING[:-1]), (3, ACTING)])
+@pytest.mark.parametrize(("n", "acting"), [(1, ACTING), (2, ACTING), (2, ACTING[:-1]), (3, ACTING)])
 def test_derivatives_are_those_of_the_reference(n: int, acting: list[Described]) -> None:
     """Two links whose pivot stands still have a closed form."""
     described = [one for one in acting if one[1].get("joint", 1) <= n]
@@ -86,6 +86,33 @@ def test_a_free_rotation_has_all_of_its_derivatives(method: str) -> None:
     by_gravity = of_mass / of_joint * (np.sin(angle) - np.sin(1.1467)) / -3.686
     right = [0.0, 0.0, 1.0, by_gravity, 2.0 / of_joint, 0.0]
     np.testing.assert_allclose(sol.sensitivities[-1, 1], right, rtol=1e-8, atol=1e-13)
+
+
+@pytest.mark.parametrize("links", [1, 2, 4])
+@pytest.mark.parametrize("where_laws_switch", [False, True])
+def test_a_pivot_that_is_pushed_is_gravity_turned(links: int, where_laws_switch: bool) -> None:
+    """Gravity g and an acceleration (a_x, a_y) of the pivot act as the gravity (-a_x, g - a_y)."""
+    bodies = [pc.Link(mass=1.0 + 0.1 * i, length=0.5, center=0.2) for i in range(links)]
+    effects: list[E.Effect] = [E.ViscousJoint(joint=1, damping=0.05)]
+    if where_laws_switch:
+        friction = {"coulomb": 0.2, "static": 0.3, "stribeck_velocity": 0.1}
+        effects.append(E.DryJointFriction(joint=1, **friction))
+    start = np.linspace(0.4, 1.1, links)
+
+    def by(name: str, gravity: float, q0: NDArray[np.float64]) -> NDArray[np.float64]:
+        scene = pc.Scene(links=bodies, gravity=gravity, effects=effects)
+        names = ["q0[1]", "effect[1].damping", name, "torque[1]"]
+        how: Any = {"rtol": 1e-11, "atol": 1e-14, "store": "end"}
+        among, alone = (
+            pc.simulate(scene, (0, 0.3), q0, 3.0, sensitivities=which, **how).sensitivities[-1]
+            for which in (names, [name])
+        )
+        np.testing.assert_allclose(alone[:, 0], among[:, 2], rtol=1e-9)
+        return among[:, 2]
+
+    down, across = by("gravity", 9.8, start), by("gravity", 0.0, start - np.pi / 2)
+    np.testing.assert_allclose(by("pivot.y", 9.8, start), -down, rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(by("pivot.x", 0.0, start), across, rtol=1e-9, atol=1e-11)
 
 
 @pytest.mark.parametrize("begin", [100.0, -3.0])

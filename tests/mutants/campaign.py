@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="mutants.campaign", description=__doc__.split("\n")[0])
     parser.add_argument("part", choices=PARTS)
     parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, help="of the draw: the record's, or 1")
     parser.add_argument("--commit", help="of which the mutants are: the record's, or HEAD")
     parser.add_argument("--only", type=int, help="the number of one mutant, tried again")
     parser.add_argument("--seconds", type=float, default=1e9, help="begin no mutant after these")
@@ -57,11 +57,12 @@ def main(arguments: list[str] | None = None) -> int:
     record = asked.record or ROOT / f"docs/records/mutants/{asked.part}.jsonl"
     drawn_from, told = read(record)
     wanted = asked.commit or drawn_from.get("commit", "HEAD")
-    source = {"commit": git(ROOT, "rev-parse", wanted), "seed": asked.seed}
+    seed = drawn_from.get("seed", 1) if asked.seed is None else asked.seed
+    source = {"commit": git(ROOT, "rev-parse", wanted), "seed": seed}
     if drawn_from and drawn_from != source:
         parser.error(f"{record} is of another commit or seed: give another --record")
     wide = max(int(SPARE * asked.count), (asked.only or 0) + 1)
-    mutants = list(islice(drawn(asked.part, asked.seed, source["commit"]), wide))
+    mutants = list(islice(drawn(asked.part, seed, source["commit"]), wide))
     alone = asked.part == "core" and asked.only is not None
     switches = asked.part == "core" and not alone
     workshop = Workshop(source["commit"], dict(enumerate(mutants, 1)) if switches else {})

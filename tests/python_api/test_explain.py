@@ -219,7 +219,7 @@ def test_costs_are_of_the_links_of_each_effect_and_of_all():
     assert costs[1].operations > costs[2].operations == 0
     assert costs[3].operations is None
     assert costs[0].nanoseconds > 0  # those of an effect are a difference of times
-    assert costs[4].nanoseconds > 0
+    assert costs[4].nanoseconds > 100  # a call of Python alone takes longer
 
 
 STARTED = {

@@ -97,8 +97,9 @@ std::string Saltation::pass(const WatchedChange& change, Matrix& changes) {
   const HeldJoints& joints = *equations_.equations().held_joints;
   const double natural = joints.natural_speed();
   const double size = std::max({largest(f), largest(f_after), natural * natural});
-  // So it is where a joint is let go, at the end of the range of torques that hold it.
-  const bool is_continuous = !change.jumped && largest(f_after - f) <= rounding_of_rates * size;
+  const Vector jump = f_after - f;
+  const bool is_continuous =
+      !change.jumped && (largest(jump) <= rounding_of_rates * size || is_let_go(change, jump));
   const bool is_again =
       std::abs(change.t - last_) <= joints.shortest_moment(change.t) && !follows_the_last(change);
   if (change.guard == nullptr) {
@@ -236,6 +237,17 @@ void Saltation::take_laws(const WatchedChange& change, Matrix& changes) {
     refuse_name(equations_.names()[static_cast<std::size_t>(column)], change.t, corner_of_a_law,
                 column, changes, remark_);
   }
+}
+
+/// Whether a joint is let go at the end of the range of torques that hold it, where rates do not
+/// jump. Beside a stiff joint, that end is known to a rounding error of many roundings of its own.
+bool Saltation::is_let_go(const WatchedChange& change, const Vector& jump) const {
+  if (change.guard == nullptr || change.guard->is_linear()) return false;
+  const HeldJoints& joints = *equations_.equations().held_joints;
+  for (int j = 0; j < n_; ++j) {
+    if (!joints.is_rounding(j, relative(jump.data() + n_, j + 1))) return false;
+  }
+  return true;
 }
 
 /// Whether a change that comes at once is no coincidence: friction stops a joint that an impact has

@@ -7,11 +7,12 @@
 ///     dt* = -(g_y dy + g_p) / g',   g' = g_y f- + g_t
 ///     dy+ = R_y (dy + f- dt*) + R_p - f+ dt*
 ///
-/// The guard is the rate of a joint with dry friction, the angle between a joint and its stop, or
-/// the torque that holds a joint within its range. R is the law of impact (impact_on_changes.hpp).
+/// The guard is the rate of a joint with dry friction, or the angle between a joint and its stop. R
+/// is the law of impact (impact_on_changes.hpp).
 ///
-/// Where f+ = f- and R(y) = y, dy goes on as it is: laws whose pieces meet, and a release at which
-/// sliding takes the torque that held. At a time that is given, dt* = 0.
+/// Where f+ = f- and R(y) = y, dy goes on as it is: laws whose pieces meet, and a joint that is let
+/// go at the end of the range of torques that hold it, as sliding takes the torque that held. At a
+/// time that is given, dt* = 0.
 ///
 /// A motion has no such derivative where it grazes a stop, where two of these fall together, and
 /// where a joint is held or let go by rounding. There, this refuses in words. So it does
@@ -68,6 +69,7 @@ class Saltation {
   std::optional<Crossing> crossing(const WatchedChange& change, const Vector& f,
                                    const Matrix& changes);
   void take_laws(const WatchedChange& change, Matrix& changes);
+  bool is_let_go(const WatchedChange& change, const Vector& jump) const;
   bool follows_the_last(const WatchedChange& change) const;
   std::string border(const WatchedChange& change);
   bool meets_a_jump_of_load(const WatchedChange& change) const;
