@@ -50,7 +50,8 @@ class Reference(NamedTuple):
 
     def texts(self) -> tuple[str, str]:
         """Return how the two runs were made, for people."""
-        return _text(self.first), _text(self.second)
+        told = "{0.method} at rtol {0.options[rtol]:.0e}, compensated"
+        return told.format(self.first), told.format(self.second)
 
 
 def reference(
@@ -85,10 +86,6 @@ def known_until(found: Reference) -> int:
     if found.uncertainty <= TOO_UNCERTAIN:
         return len(found.times)
     return int(np.argmax(~(found.apart <= KNOWN)))
-
-
-def _text(solution: pc.Solution) -> str:
-    return f"{solution.method} at rtol {float(solution.options['rtol']):.0e}, compensated"
 
 
 def methods_of(method: str) -> set[str]:
