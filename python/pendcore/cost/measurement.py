@@ -18,7 +18,7 @@ import pendcore as pc
 from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.point import Point
-from pendcore.cost.reference import KNOWN, Reference, known_until, reference
+from pendcore.cost.reference import KNOWN, Reference, reference
 from pendcore.cost.runs import Start, has_error_estimate
 from pendcore.methods import known_methods, pair_of
 
@@ -123,7 +123,7 @@ class Measurement:
         """Run the reference, and again over a shorter span if the whole one cannot be followed."""
         for _ in range(3):
             found = self._reference(stiff)
-            end, known = float(found.times[-1]), known_until(found)
+            end, known = float(found.times[-1]), found.known_until()
             if known < 2:
                 self.remarks.append("the two references part at once: no error here has a meaning")
                 break

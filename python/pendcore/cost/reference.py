@@ -38,6 +38,12 @@ class Reference(NamedTuple):
         """The largest distance of the two, as a share of the total length."""
         return float(self.apart.max())
 
+    def known_until(self) -> int:
+        """Return how many of the times are known well enough: all, or those up to a horizon."""
+        if self.uncertainty <= TOO_UNCERTAIN:
+            return len(self.times)
+        return int(np.argmax(~(self.apart <= KNOWN)))
+
     def error_of(self, solution: pc.Solution) -> float:
         """Return the largest distance of a run from the reference run by another method."""
         kin = methods_of(solution.method)
@@ -79,13 +85,6 @@ def reference(
     count = min(len(one) for one in (times, first.t, second.t))
     apart = first.scene.distances(first.q[:count], second.q[:count])
     return Reference(first, second, times[:count], np.where(np.isnan(apart), inf, apart))
-
-
-def known_until(found: Reference) -> int:
-    """Return how many of the times are known well enough: all, or those up to a horizon."""
-    if found.uncertainty <= TOO_UNCERTAIN:
-        return len(found.times)
-    return int(np.argmax(~(found.apart <= KNOWN)))
 
 
 def methods_of(method: str) -> set[str]:
