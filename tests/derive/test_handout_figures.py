@@ -26,7 +26,7 @@ def test_arrows_point_the_way_that_counts_as_positive(
 ) -> None:
     """On link 1 F_01 and F_21 point along +x and +y; on link 2 F_21 is the other way round."""
     sheets: list[list[tuple[str, list[float]]]] = []
-    sheet, arrow = sketch.Sketch, sketch.arrow
+    sheet, arrow = sketch.Sketch, sketch.Sketch.arrow
 
     def begun(*given: Any) -> Any:
         sheets.append([])
@@ -36,8 +36,8 @@ def test_arrows_point_the_way_that_counts_as_positive(
         sheets[-1].append((text, np.sign(np.round(along, 9)).tolist()))
         arrow(on, start, along, text, *more, **how)
 
-    monkeypatch.setattr(sketch, "Sketch", begun)
-    monkeypatch.setattr(sketch, "arrow", looked_at)
+    monkeypatch.setattr("pendcore.derive.report.bodies.Sketch", begun)
+    monkeypatch.setattr(sheet, "arrow", looked_at)
     scene = pc.Scene(links=[pc.Link(mass=1.0, length=1.0)] * n)
     drawn("free_bodies", scene, [0.5] * n)
     for i, arrows in enumerate(sheets, start=1):
@@ -65,7 +65,7 @@ def test_free_bodies_have_names_and_the_couple_that_turns_a_payload() -> None:
 @pytest.mark.parametrize("angle", [0.3, 2.0, -1.2, -2.9])
 def test_a_couple_is_drawn_on_the_side_that_is_asked_for(angle: float) -> None:
     on = sketch.Sketch(Figure().subplots(), 1.0)
-    sketch.couple(on, np.zeros(2), sketch.direction(angle), "$M$")
+    on.couple(np.zeros(2), sketch.direction(angle), "$M$")
     ((points, _),) = on.drawn
     assert np.arctan2(*points.mean(axis=0)[::-1]) == pytest.approx(angle, abs=0.1)
 

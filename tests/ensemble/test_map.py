@@ -98,7 +98,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_map(tmp_path, cap
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("pendcore.cli.usage.TemporaryFile", refuse)  # root may write everywhere
-    monkeypatch.setattr("pendcore.cli.map._computed", lambda *asked: pytest.fail("computed"))
+    monkeypatch.setattr("pendcore.cli.map._Map.compute", lambda *asked: pytest.fail("computed"))
     folder = tmp_path / "new" / "folder"
     assert run(folder, "--count", "4") == 2
     told = f"{folder}: cannot be written: Permission denied: choose another folder"

@@ -38,8 +38,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     _make_surroundings_safe()
     parser, commands = _parser()
-    if "_ARGCOMPLETE" in os.environ:
-        completion.complete(parser)
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks how a line goes on
+        import argcomplete
+
+        argcomplete.autocomplete(parser)
     try:
         args = known_words(parser, commands, sys.argv[1:] if argv is None else argv)
     except SystemExit as stop:  # after --help, --version and wrong usage

@@ -10,10 +10,13 @@ from pendcore import AccuracyError, Case, Solution, load, read_case
 from pendcore.cli.usage import UsageError
 
 
-def add_case(parser: argparse.ArgumentParser) -> None:
-    """Add the argument for a case."""
-    told = "what to simulate; default: the textbook's case"
-    parser.add_argument("case", nargs="?", type=Path, metavar="CASE.toml", help=told)
+def add_case(parser: argparse.ArgumentParser, *, or_solution: bool = False) -> None:
+    """Add the argument for a case, or for a saved solution as well."""
+    what, metavar = "what to simulate", "CASE.toml"
+    if or_solution:
+        what, metavar = "a solution that `pendcore run` wrote, or a case", "RUN.npz|CASE.toml"
+    told = f"{what}; default: the textbook's case"
+    parser.add_argument("case", nargs="?", type=Path, metavar=metavar, help=told)
 
 
 def add_out(
@@ -52,12 +55,6 @@ def case_of(args: argparse.Namespace) -> Case:
 def folder_of(args: argparse.Namespace) -> Path:
     """Return the folder that was named, or one named after the case."""
     return args.out or Path("out", args.case.stem if args.case else "textbook")
-
-
-def add_case_or_solution(parser: argparse.ArgumentParser) -> None:
-    """Add the argument for a case or a saved solution."""
-    told = "a solution that `pendcore run` wrote, or a case; default: the textbook's case"
-    parser.add_argument("case", nargs="?", type=Path, metavar="RUN.npz|CASE.toml", help=told)
 
 
 def load_solution(path: Path) -> Solution:

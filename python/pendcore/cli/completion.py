@@ -29,12 +29,3 @@ def execute(args: argparse.Namespace) -> int:
         raise UsageError("needs argcomplete: pip install argcomplete") from None
     print(argcomplete.shellcode(["pendcore"], shell=args.shell))
     return 0
-
-
-def complete(parser: argparse.ArgumentParser) -> None:
-    """Answer a shell that asks how a line goes on, and end; do nothing if no shell asks."""
-    try:
-        import argcomplete
-    except ImportError:  # then no shell has the script that asks
-        return
-    argcomplete.autocomplete(parser)

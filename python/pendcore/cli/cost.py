@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import Any
 
 from pendcore import Case
 from pendcore.cli import arguments
 from pendcore.cli.files_to_write import FilesToWrite
 from pendcore.cli.usage import UsageError, blamed_on_usage, new_folder
-from pendcore.cost.accuracy_cost import AccuracyCost, save_figure, text
+from pendcore.cost.accuracy_cost import FIGURE_SIZE, AccuracyCost, text
 from pendcore.cost.sweep import REPEATS, TIME_LIMIT, accuracy_cost
 from pendcore.messages import at_least, positive
 from pendcore.options import OPTIONS
+from pendcore.plotting import new_axes
 
 HELP = "measure what accuracy costs on a case: errors and times of every method"
 DESCRIPTION = "Sweep methods and tolerances on a case; without one, the textbook's."
@@ -43,6 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
+    from matplotlib.figure import Figure
+
     with blamed_on_usage():
         at_least("--repeats", args.repeats, 1)
         positive("--error", args.error, "of the total length")
@@ -58,7 +62,10 @@ def execute(args: argparse.Namespace) -> int:
         with files.one("cost.json") as path:
             path.write_text(cost.to_json() + "\n", encoding="utf-8")
         with files.one("cost.png") as path:
-            save_figure(cost, path)
+            (axes,) = new_axes(FIGURE_SIZE, new_figure=Figure)
+            cost.plot(axes)
+            figure: Any = axes.figure
+            figure.savefig(path, dpi=160)
         print(files.outcome(), file=sys.stderr)
         if not whole:
             print("interrupted: this is what was measured until then", file=sys.stderr)

@@ -30,7 +30,7 @@ ffmpeg writes MP4; where it is missing, a GIF is written instead.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    arguments.add_case_or_solution(parser)
+    arguments.add_case(parser, or_solution=True)
     told = "its suffix: html, mp4, gif, png; default: out/ and the name of the case, .html"
     arguments.add_out(parser, "FILE", told)
     arguments.add_number(parser, "--speed", "X", "1, the default, is true time, 0.25 slow motion")

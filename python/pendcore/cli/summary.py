@@ -25,6 +25,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
     case, end = solution.case(), solution.y_reached
     n = len(case.scene.links)
     drift = solution.energy_drift()
+    ledger = solution.energy().ledger if len(solution.t) else None
     found = {
         "name": case.name,
         "links": [asdict(link) for link in case.scene.links],
@@ -33,7 +34,10 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "mobility": case.scene.mobility()._asdict(),
         "start": {"t": case.t_span[0], "q": case.q0, "qd": case.qd0},
         "run": {"t_end": case.t_span[1]} | _run_options(case, solution),
-        "events": _events(solution),
+        "events": [
+            {"kind": x.kind, "text": repr(x), "times": [one.t for one in of_x]}
+            for x, of_x in zip(solution.events_asked_for(), solution.events, strict=True)
+        ],
         "status": solution.status,
         "message": solution.message,
         "last_method": solution.last_method,
@@ -43,7 +47,7 @@ def facts(solution: Solution, refusal: str = "") -> dict[str, Any]:
         "statistics": solution.stats._asdict(),
         "accuracy": None if solution.accuracy is None else solution.accuracy.to_dict(),
         "energy": drift._asdict() | {"sentence": str(drift)},
-        "ledger": _ledger(solution),
+        "ledger": ledger and {name: entry[-1] for name, entry in ledger.items()},
         "kept": {
             "times": len(solution.t),
             "every_step": solution.keeps_every_step,
@@ -72,22 +76,6 @@ def _effect(effect: Effect) -> dict[str, Any]:
     given = effect.particulars().items()
     values = {name: x.particulars() if isinstance(x, Part) else x for name, x in given}
     return {"kind": effect.kind, **values, "text": repr(effect)}
-
-
-def _events(solution: Solution) -> list[dict[str, Any]]:
-    """Return each event asked for, and when it was found."""
-    found = zip(solution.events_asked_for(), solution.events, strict=True)
-    return [
-        {"kind": x.kind, "text": repr(x), "times": [one.t for one in of_x]} for x, of_x in found
-    ]
-
-
-def _ledger(solution: Solution) -> dict[str, float] | None:
-    """Return the entries of the ledger at the last kept time, J, if the run kept a ledger."""
-    ledger = solution.energy().ledger
-    if ledger is None or not len(solution.t):
-        return None
-    return {name: float(entry[-1]) for name, entry in ledger.items()}
 
 
 def _run_options(case: Case, solution: Solution) -> dict[str, Any]:

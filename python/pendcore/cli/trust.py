@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pendcore import Solution
-from pendcore.cli.arguments import add_case_or_solution, add_flags, add_number, solution_of
+from pendcore.cli.arguments import add_case, add_flags, add_number, solution_of
 from pendcore.cli.horizon import horizon_of
 from pendcore.cli.usage import blamed_on_usage
 from pendcore.explanation.solution_text import LIMIT
@@ -29,7 +29,7 @@ example:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_case_or_solution(parser)
+    add_case(parser, or_solution=True)
     told = "error of an angle, rad, up to which a run counts as right"
     add_number(parser, "--limit", "RAD", told, LIMIT)
     add_number(parser, "--time-limit", "S", "seconds of computing for the second runs")

@@ -44,18 +44,14 @@ def new_folder(folder: Path) -> Iterator[None]:
     with blamed_on_usage():
         folder.mkdir(parents=True, exist_ok=True)
     try:
-        _require_writable(folder)
+        try:
+            TemporaryFile(dir=folder).close()
+        except OSError as error:
+            told = f"{folder}: cannot be written: {error.strerror}: choose another folder"
+            raise UsageError(told) from None
         yield
     except BaseException:
         with suppress(OSError):
             for path in new:
                 path.rmdir()
         raise
-
-
-def _require_writable(folder: Path) -> None:
-    try:
-        TemporaryFile(dir=folder).close()
-    except OSError as error:
-        told = f"{folder}: cannot be written: {error.strerror}: choose another folder"
-        raise UsageError(told) from None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from pendcore.cost.point import Point, duration, front, seconds_at
 from pendcore.cost.runs import line_style
 from pendcore.messages import as_json, positive, whole_file
-from pendcore.plotting import Theme, as_drawn, grid, legend_above, new_axes, one_axes, theme_of
+from pendcore.plotting import Theme, as_drawn, grid, legend_above, one_axes, theme_of
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -204,16 +204,6 @@ class AccuracyCost:
 
     def __repr__(self) -> str:
         return text(self)
-
-
-def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
-    """Draw a sweep into a file; the suffix says which kind (png, pdf, svg, ...)."""
-    from matplotlib.figure import Figure
-
-    (axes,) = new_axes(FIGURE_SIZE, new_figure=Figure)
-    cost.plot(axes)
-    figure: Any = axes.figure
-    figure.savefig(path, dpi=160)
 
 
 def text(cost: AccuracyCost, error: float = 1e-6) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from math import inf, nan
+from operator import itemgetter
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -177,14 +179,11 @@ class HorizonWork:
         return "\n".join(lines)
 
     def _untried_by_method(self) -> str:
-        rows: dict[str, list[str]] = {}
-        for method, rtol in self.untried:
-            rows.setdefault(method, []).append(f"{rtol:.0e}")
-        tried = self.methods
-        return ", ".join(
-            f"{method} at rtol {', '.join(rtols)}" if method in tried else method
-            for method, rtols in rows.items()
-        )
+        told = []
+        for method, pairs in groupby(self.untried, key=itemgetter(0)):
+            rtols = ", ".join(f"{rtol:.0e}" for _, rtol in pairs)
+            told.append(f"{method} at rtol {rtols}" if method in self.methods else method)
+        return ", ".join(told)
 
 
 def _draw(by_digits: Axes, by_cost: Axes, points: list[HorizonPoint], how: dict[str, Any]) -> None:

@@ -18,9 +18,8 @@ import pendcore as pc
 from pendcore import build
 from pendcore.cost.accuracy_cost import AccuracyCost
 from pendcore.cost.point import Point
-from pendcore.cost.reference import KNOWN, Reference, known_until, reference
+from pendcore.cost.reference import KNOWN, Reference, reference
 from pendcore.cost.runs import Start, has_error_estimate
-from pendcore.messages import Floats
 from pendcore.methods import known_methods, pair_of
 
 # A third of the time limit is for the reference and a third for single runs; the rest for repeats.
@@ -105,8 +104,9 @@ class Measurement:
     def _timed(self, tried: list[Point]) -> str:
         counts = [p.repeats for p in tried if not p.failure] or [0]
         calls = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)}-{max(counts)}"
+        count = len(self._known.times)
         return (
-            f"of pendcore.simulate(..., t_eval={len(self._times())} times), the call that has the "
+            f"of pendcore.simulate(..., t_eval={count} times), the call that has the "
             f"error, from Python: the least, and the median, of {calls} calls in turns"
         )
 
@@ -114,15 +114,16 @@ class Measurement:
         """Return how much is left of a share of the time limit, s."""
         return max(self.began + share * self.time_limit - monotonic(), 1e-3)
 
-    def _times(self) -> Floats:
+    @property
+    def _known(self) -> Reference:
         assert self.reference is not None
-        return self.reference.times
+        return self.reference
 
     def _find_reference(self, stiff: bool) -> None:
         """Run the reference, and again over a shorter span if the whole one cannot be followed."""
         for _ in range(3):
             found = self._reference(stiff)
-            end, known = float(found.times[-1]), known_until(found)
+            end, known = float(found.times[-1]), found.known_until()
             if known < 2:
                 self.remarks.append("the two references part at once: no error here has a meaning")
                 break
@@ -201,18 +202,16 @@ class Measurement:
 
     def _is_short_enough(self, row: list[Contender], allowed: float) -> bool:
         """Return whether halving a fixed step is over: it gained nothing, or is too dear."""
-        assert self.reference is not None
         one, before = row[-1].point, row[-2].point.error if len(row) > 1 else inf
-        gained = one.error > 2 * self.reference.uncertainty
+        gained = one.error > 2 * self._known.uncertainty
         # Errors above `KNOWN` may come from unstable steps, and need not fall yet.
         gained &= one.error < before / 2 or before > KNOWN
         dear = sum(row[-1].seconds) > allowed / self.repeats
         return one.step is not None and (dear or not gained)
 
     def _try(self, one: Contender, limit: float) -> None:
-        assert self.reference is not None
         solution, seconds = self._call(one.point, time_limit=limit)
-        error, failure = self.reference.error_of(solution), ""
+        error, failure = self._known.error_of(solution), ""
         if not solution.success:
             too_long = f"took more than the {limit:.2g} s left for it of the time limit"
             failure = too_long if solution.status == "time_limit" else solution.message
@@ -248,7 +247,7 @@ class Measurement:
         span = (start.t_start, start.t_end)
         begin = perf_counter()
         solution = pc.simulate(
-            start.scene, span, start.q0, start.qd0, method=one.method, t_eval=self._times(),
+            start.scene, span, start.q0, start.qd0, method=one.method, t_eval=self._known.times,
             time_limit=time_limit, on_failure="ignore", progress=False, **options,
         )  # fmt: skip
         return solution, perf_counter() - begin

@@ -38,6 +38,12 @@ class Reference(NamedTuple):
         """The largest distance of the two, as a share of the total length."""
         return float(self.apart.max())
 
+    def known_until(self) -> int:
+        """Return how many of the times are known well enough: all, or those up to a horizon."""
+        if self.uncertainty <= TOO_UNCERTAIN:
+            return len(self.times)
+        return int(np.argmax(~(self.apart <= KNOWN)))
+
     def error_of(self, solution: pc.Solution) -> float:
         """Return the largest distance of a run from the reference run by another method."""
         kin = methods_of(solution.method)
@@ -50,7 +56,8 @@ class Reference(NamedTuple):
 
     def texts(self) -> tuple[str, str]:
         """Return how the two runs were made, for people."""
-        return _text(self.first), _text(self.second)
+        told = "{0.method} at rtol {0.options[rtol]:.0e}, compensated"
+        return told.format(self.first), told.format(self.second)
 
 
 def reference(
@@ -78,17 +85,6 @@ def reference(
     count = min(len(one) for one in (times, first.t, second.t))
     apart = first.scene.distances(first.q[:count], second.q[:count])
     return Reference(first, second, times[:count], np.where(np.isnan(apart), inf, apart))
-
-
-def known_until(found: Reference) -> int:
-    """Return how many of the times are known well enough: all, or those up to a horizon."""
-    if found.uncertainty <= TOO_UNCERTAIN:
-        return len(found.times)
-    return int(np.argmax(~(found.apart <= KNOWN)))
-
-
-def _text(solution: pc.Solution) -> str:
-    return f"{solution.method} at rtol {float(solution.options['rtol']):.0e}, compensated"
 
 
 def methods_of(method: str) -> set[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from itertools import groupby
 from textwrap import fill
 from typing import Any
 
@@ -122,15 +121,14 @@ def groups(equations: Iterable[Equation]) -> Iterator[tuple[str | None, list[Equ
 
     A remark ends a group.
     """
-    for number, of_one in groupby(equations, key=lambda equation: equation.number):
-        together: list[Equation] = []
-        for equation in of_one:
-            together.append(equation)
-            if equation.remark:
-                yield number, together
-                together = []
-        if together:
-            yield number, together
+    together: list[Equation] = []
+    for equation in equations:
+        if together and (together[-1].remark or together[-1].number != equation.number):
+            yield together[-1].number, together
+            together = []
+        together.append(equation)
+    if together:
+        yield together[-1].number, together
 
 
 def _wrapped(equation: str) -> str:

@@ -176,13 +176,15 @@ def find_equilibria(
 
 def _described(name: str, q: Floats, by_angle: Floats, by_rate: Floats) -> Equilibrium:
     rates, turns_back = _rates_about(by_angle, by_rate)
-    modes = sorted((_mode(x) for x in rates if x.imag >= 0), key=_place)
-    grows = any(mode.rate > _NOISE * _size(mode) for mode in modes)
+    # The slowest first; of two that are equally fast, what grows.
+    upper = [x for x in rates.tolist() if x.imag >= 0]
+    upper.sort(key=lambda x: (float(f"{abs(x):.9e}"), -x.real))
+    grows = any(x.real > _NOISE * abs(x) for x in upper)
     return Equilibrium(
         name=name,
         q=tuple((q + 0.0).tolist()),  # no -0.0
         stability="unstable" if grows else "stable" if turns_back else "indifferent",
-        modes=tuple(modes),
+        modes=tuple(map(_mode, upper)),
         stiffest_rate=float(np.abs(rates).max(initial=0.0)),
     )
 
@@ -210,16 +212,7 @@ def _by_size(rates: Floats | Complexes) -> Complexes:
 
 
 def _mode(eigenvalue: complex) -> Mode:
-    w, rate = float(abs(eigenvalue)), float(eigenvalue.real) + 0.0  # no -0.0
+    w, rate = abs(eigenvalue), eigenvalue.real + 0.0  # no -0.0
     if eigenvalue.imag == 0:
         return Mode(rate, 0.0, 0.0, None)
     return Mode(rate, w, w / (2 * pi), 0.0 - rate / w)
-
-
-def _place(mode: Mode) -> tuple[float, float]:
-    """Return what sorts modes: the slowest first; of two that are equally fast, what grows."""
-    return float(f"{_size(mode):.9e}"), -mode.rate
-
-
-def _size(mode: Mode) -> float:
-    return max(mode.angular_frequency, abs(mode.rate))

@@ -35,7 +35,10 @@ def rows_of(solution: Solution) -> list[tuple[str, str]]:
     rows = [("status", message if message.startswith(f"{status}:") else f"{status}: {message}")]
     if len(t):
         rows.append(("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"))
-    rows.append(("right", _right(solution)))
+    right = "not estimated yet: sol.valid_until() does, by a second run"
+    if solution.known_error is not None:
+        right = f"to {LIMIT:g} rad {_until(solution, solution.known_error.valid_until(LIMIT))}"
+    rows.append(("right", right))
     if solution.sensitivities is not None:
         rows.append(("sensitivities", _sensitivities(solution, solution.sensitivities)))
     every = -(-len(t) // _MANY) or 1
@@ -52,14 +55,6 @@ def rows_of(solution: Solution) -> list[tuple[str, str]]:
     rows.append(("scene", _scene(solution)))
     rows.append(("method", f"{solution.method}, {stats.accepted:,} steps, {called}"))
     return rows
-
-
-def _right(solution: Solution) -> str:
-    """Return until when a run is right, if that is known, or how to find out."""
-    known = solution.known_error
-    if known is None:
-        return "not estimated yet: sol.valid_until() does, by a second run"
-    return f"to {LIMIT:g} rad {_until(solution, known.valid_until(LIMIT))}"
 
 
 def _sensitivities(solution: Solution, found: Floats) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 from pendcore import Scene
 from pendcore.effects import Payload
 from pendcore.messages import Floats, finite_array, silence
-from pendcore.plotting import sketch
 from pendcore.plotting.axes import Request, one_axes
 from pendcore.plotting.curve import curve_of, span_of
 from pendcore.plotting.over_time import force_name
@@ -115,14 +114,20 @@ def draw_free_bodies(asked: Request) -> list[Artist]:
         across = np.array([*ends, *free])[:, 0]
         moved = np.array([right - across.min(), -pose[i, 1]])
         right += np.ptp(across) + 0.5 * reach
-        _draw_body(on, i, angle, ends + moved, centers[i] + moved)
+        start, end = ends + moved
+        on.rod(start, end)
+        on.mass_center(centers[i] + moved)
+        on.pin(start)
+        on.pin(end)
+        parts = [start + share * (end - start) for share in (0.75, 0.3, 0.65, 0.85)]
+        on.number(parts, i + 1, direction(angle - np.pi / 2))
         for one, along, arrives in drawn:
             text = f"{one.name} = {np.hypot(*one.force):.3g} N"
             color = getattr(on.theme, one.kind)
-            sketch.arrow(on, one.at + moved, along, text, color, arriving=arrives)
+            on.arrow(one.at + moved, along, text, color, arriving=arrives)
     axis.set_title(f"t = {t:.4g} s", loc="left")
     before = len(axis.texts)
-    sketch.finish(on)
+    on.finish()
     return [*axis.texts[before:]]
 
 
@@ -134,16 +139,6 @@ def arrows_of(forces: Floats, full: float, reach: float) -> Floats:
     sizes = np.hypot(forces[..., :1], forces[..., 1:])
     lengths = np.clip(_LONGEST * sizes / (full or 1.0), _SHORTEST, _LONGEST) * reach
     return np.asarray(forces / np.maximum(sizes, 1e-300) * lengths * (sizes > 1e-9 * full))
-
-
-def _draw_body(on: Sketch, i: int, angle: float, ends: Floats, center: Floats) -> None:
-    """Draw a link with its ends, its mass centre, and its number."""
-    sketch.rod(on, *ends)
-    sketch.mass_center(on, center)
-    for end in ends:
-        sketch.pin(on, end)
-    parts = [ends[0] + share * (ends[1] - ends[0]) for share in (0.75, 0.3, 0.65, 0.85)]
-    sketch.number(on, parts, i + 1, direction(angle - np.pi / 2))
 
 
 def _would_lie_on_link(of: Force, along: Floats, ends: Floats) -> bool:

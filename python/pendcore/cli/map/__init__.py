@@ -6,9 +6,9 @@ import argparse
 import re
 import sys
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -51,26 +51,6 @@ _OPTIONS = ("method", "rtol", "atol", "max_steps", "max_step")
 """Those of the case that count in a map."""
 
 
-class _Asked(NamedTuple):
-    """What a map shows. A component of the end state needs no reducer."""
-
-    case: Case
-    table: MapTable
-    reducer: Reducer | None
-    args: argparse.Namespace
-
-
-@dataclass(slots=True)
-class Pixels:
-    """The values of the pixels, and which are computed and resolved, (n_x, n_y)."""
-
-    values: Floats
-    resolved: Mask
-    computed: Mask
-    counts: Counter[str] = field(default_factory=Counter)
-    forbidden: int = 0
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("case", type=Path, metavar="CASE.toml", help="a case with a table [map]")
     add_out(parser)
@@ -86,25 +66,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     with blamed_on_usage():
         case, table = read_case(args.case), read_map_table(args.case)
-        table = _asked_for(table, args)
-        reducer = _reducer(table.show, case)
-        levels_of((table.x.count, table.y.count), args.refine)
-    asked = _Asked(case, table, reducer, args)
+        asked = _Map(case, _asked_for(table, args), args)
+        levels_of(asked.shape, args.refine)
     folder = args.out or Path("out", args.case.stem)
     with new_folder(folder):
         with blamed_on_usage():
-            pixels, complaint = _computed(asked)
+            complaint = asked.compute()
         files = FilesToWrite(folder, FILES)
-        told = _summary(asked, pixels)
+        told = asked.summary()
         with files.one("summary.txt") as path:
             path.write_text(told, encoding="utf-8")
         with files.one("map.npz") as path, path.open("wb") as file:
             np.savez(
-                file, x=table.x.values, y=table.y.values, values=pixels.values,
-                resolved=pixels.resolved, computed=pixels.computed, case=case.to_toml(),
+                file, x=asked.table.x.values, y=asked.table.y.values, values=asked.values,
+                resolved=asked.resolved, computed=asked.computed, case=case.to_toml(),
             )  # fmt: skip
         with files.one("map.png") as path:
-            _save_figure(asked, pixels, path)
+            asked.save_figure(path)
         print(files.outcome(), file=sys.stderr)
         print(complaint or told, end="\n" * bool(complaint), file=sys.stderr if complaint else None)
         files.refuse_if_none()
@@ -153,105 +131,108 @@ def _require_link(what: str, number: str, case: Case) -> None:
         raise UsageError(f"{what}: the scene has {len(case.scene.links)} links")
 
 
-def _computed(asked: _Asked) -> tuple[Pixels, str]:
-    """Return the pixels, and a complaint if they are not all there."""
-    table, shape = asked.table, (asked.table.x.count, asked.table.y.count)
-    pixels = Pixels(np.full(shape, np.nan), np.zeros(shape, bool), np.zeros(shape, bool))
+class _Map:
+    """What a map shows, and its pixels: their values, which are resolved, and which computed.
 
-    def compute(level: tuple[int, int], wanted: Mask) -> tuple[Floats, Mask]:
-        x, y = (replace(table.x, count=level[0]), replace(table.y, count=level[1]))
-        i, k = np.nonzero(wanted)
-        return _run(asked, x.values[i], y.values[k], pixels)
+    These are (n_x, n_y). A component of the end state needs no reducer.
+    """
 
-    complaint = ""
-    try:
-        for found in refined(shape, asked.args.refine, compute):
-            pixels.values, pixels.resolved, pixels.computed = found
-    except KeyboardInterrupt:
-        complaint = "interrupted: the map has what was computed before"
-    return pixels, complaint
+    def __init__(self, case: Case, table: MapTable, args: argparse.Namespace) -> None:
+        self.case, self.table, self.args = case, table, args
+        self.reducer = _reducer(table.show, case)
+        self.shape = table.x.count, table.y.count
+        self.values = np.full(self.shape, np.nan)
+        self.resolved, self.computed = np.zeros(self.shape, bool), np.zeros(self.shape, bool)
+        self._counts, self._needless = Counter[str](), 0
 
+    def compute(self) -> str:
+        """Compute the pixels; return a complaint if they are not all there."""
 
-def _run(asked: _Asked, x: Floats, y: Floats, pixels: Pixels) -> tuple[Floats, Mask]:
-    """Run pixels (k,); return their values, and which of them are resolved."""
-    case, table, reducer, args = asked
-    q0, qd0, vary = _starts(asked, x, y)
-    options = {name: value for name, value in case.options.items() if name in _OPTIONS}
-    values, resolved = np.full(len(x), np.nan), np.ones(len(x), dtype=bool)
-    wanted = ~_forbidden(asked, x, y)
-    pixels.forbidden += int(np.count_nonzero(~wanted))
-    vary = {name: one[wanted] for name, one in vary.items()}
-    found = ensemble(
-        case.scene, case.t_span, q0[wanted], qd0[wanted], vary=vary, workers=args.workers,
-        keep="end" if reducer is None else reducer, on_failure="ignore", **options,
-    )  # fmt: skip
-    pixels.counts.update(found.counts())
-    values[wanted] = values_of(found, table.show)
-    if not args.no_trust:
-        other = found.second(workers=args.workers, on_failure="ignore")
-        resolved[wanted] = found.resolved(other)
-    return values, resolved
+        def run(level: tuple[int, int], wanted: Mask) -> tuple[Floats, Mask]:
+            x, y = (replace(self.table.x, count=level[0]), replace(self.table.y, count=level[1]))
+            i, k = np.nonzero(wanted)
+            return self._run(x.values[i], y.values[k])
 
+        try:
+            for found in refined(self.shape, self.args.refine, run):
+                self.values, self.resolved, self.computed = found
+        except KeyboardInterrupt:
+            return "interrupted: the map has what was computed before"
+        return ""
 
-def _forbidden(asked: _Asked, x: Floats, y: Floats) -> Mask:
-    """Return at which pixels (k,) the event cannot happen; where a parameter varies, none."""
-    q0, qd0, vary = _starts(asked, x, y)
-    if vary or not isinstance(asked.reducer, FirstEvent):
-        return np.zeros(len(x), dtype=bool)
-    return is_forbidden(asked.case.scene, q0, qd0, asked.reducer.event)
+    def _run(self, x: Floats, y: Floats) -> tuple[Floats, Mask]:
+        """Run pixels (k,); return their values, and which of them are resolved."""
+        case, reducer, workers = self.case, self.reducer, self.args.workers
+        q0, qd0, vary = self._starts(x, y)
+        options = {name: value for name, value in case.options.items() if name in _OPTIONS}
+        values, resolved = np.full(len(x), np.nan), np.ones(len(x), dtype=bool)
+        wanted = ~self._forbidden(x, y)
+        self._needless += int(np.count_nonzero(~wanted))
+        vary = {name: one[wanted] for name, one in vary.items()}
+        found = ensemble(
+            case.scene, case.t_span, q0[wanted], qd0[wanted], vary=vary, workers=workers,
+            keep="end" if reducer is None else reducer, on_failure="ignore", **options,
+        )  # fmt: skip
+        self._counts.update(found.counts())
+        values[wanted] = values_of(found, self.table.show)
+        if not self.args.no_trust:
+            other = found.second(workers=workers, on_failure="ignore")
+            resolved[wanted] = found.resolved(other)
+        return values, resolved
 
+    def _forbidden(self, x: Floats, y: Floats) -> Mask:
+        """Return at which pixels (k,) the event cannot happen; where a parameter varies, none."""
+        q0, qd0, vary = self._starts(x, y)
+        if vary or not isinstance(self.reducer, FirstEvent):
+            return np.zeros(len(x), dtype=bool)
+        return is_forbidden(self.case.scene, q0, qd0, self.reducer.event)
 
-def _starts(asked: _Asked, x: Floats, y: Floats) -> tuple[Floats, Floats, dict[str, Floats]]:
-    """Return angles and rates (k, n), and the parameters that vary, of pixels."""
-    case, table, *_ = asked
-    q0, qd0 = np.tile(case.q0, (len(x), 1)), np.tile(case.qd0, (len(x), 1))
-    vary: dict[str, Floats] = {}
-    for axis, values in ((table.x, x), (table.y, y)):
-        start = re.fullmatch(r"(q0|q0_deg|qd0)\[(\d+)\]", axis.name)
-        if start is None:
-            vary[axis.name] = values
-            continue
-        _require_link(axis.name, start[2], case)
-        target = qd0 if start[1] == "qd0" else q0
-        target[:, int(start[2]) - 1] = np.radians(values) if start[1] == "q0_deg" else values
-    return q0, qd0, vary
+    def _starts(self, x: Floats, y: Floats) -> tuple[Floats, Floats, dict[str, Floats]]:
+        """Return angles and rates (k, n), and the parameters that vary, of pixels."""
+        q0, qd0 = np.tile(self.case.q0, (len(x), 1)), np.tile(self.case.qd0, (len(x), 1))
+        vary: dict[str, Floats] = {}
+        for axis, values in ((self.table.x, x), (self.table.y, y)):
+            start = re.fullmatch(r"(q0|q0_deg|qd0)\[(\d+)\]", axis.name)
+            if start is None:
+                vary[axis.name] = values
+                continue
+            _require_link(axis.name, start[2], self.case)
+            target = qd0 if start[1] == "qd0" else q0
+            target[:, int(start[2]) - 1] = np.radians(values) if start[1] == "q0_deg" else values
+        return q0, qd0, vary
 
+    def summary(self) -> str:
+        table, total, (begin, end) = self.table, self.values.size, self.case.t_span
+        lines = [
+            f"{table.show} over {table.x.name} and {table.y.name}, t = {begin:g} to {end:g} s",
+            f"{table.x.count} x {table.y.count} pixels",
+            "runs: " + ", ".join(f"{count} {name}" for name, count in self._counts.items()),
+        ]
+        if needless := self._needless:
+            lines.append(f"{needless} were not needed: the energy does not suffice for the event")
+        if self.args.refine:
+            share = np.count_nonzero(self.computed) / total
+            lines.append(f"computed at the finest level: {share:.1%}")
+        some = self.values[np.isfinite(self.values)]
+        if some.size:
+            lines.append(f"values: {some.min():.6g} to {some.max():.6g}, at {some.size} pixels")
+        if not self.args.no_trust:
+            lines.append(f"resolved: {np.count_nonzero(self.resolved) / total:.2%} of the pixels")
+        return "\n".join(lines) + "\n"
 
-def _summary(asked: _Asked, pixels: Pixels) -> str:
-    case, table, _, args = asked
-    total = pixels.values.size
-    begin, end = case.t_span
-    lines = [
-        f"{table.show} over {table.x.name} and {table.y.name}, t = {begin:g} to {end:g} s",
-        f"{table.x.count} x {table.y.count} pixels",
-        "runs: " + ", ".join(f"{count} {name}" for name, count in pixels.counts.items()),
-    ]
-    if needless := pixels.forbidden:
-        lines.append(f"{needless} were not needed: the energy does not suffice for the event")
-    if args.refine:
-        share = np.count_nonzero(pixels.computed) / total
-        lines.append(f"computed at the finest level: {share:.1%}")
-    some = pixels.values[np.isfinite(pixels.values)]
-    if some.size:
-        lines.append(f"values: {some.min():.6g} to {some.max():.6g}, at {some.size} pixels")
-    if not args.no_trust:
-        lines.append(f"resolved: {np.count_nonzero(pixels.resolved) / total:.2%} of the pixels")
-    return "\n".join(lines) + "\n"
+    def save_figure(self, path: Path) -> None:
+        from matplotlib.figure import Figure
 
-
-def _save_figure(asked: _Asked, pixels: Pixels, path: Path) -> None:
-    from matplotlib.figure import Figure
-
-    case, table, reducer, args = asked
-    forbidden = ~np.isfinite(pixels.values)
-    i, k = np.nonzero(forbidden)
-    forbidden[i, k] = _forbidden(asked, table.x.values[i], table.y.values[k])
-    shown = shown_of(pixels.values, table.show, reducer, forbidden, "the energy forbids it")
-    (axes,) = new_axes(MAP_SIZE, new_figure=Figure)
-    x, y = (_axis(case, axis) for axis in (table.x, table.y))
-    draw_map(axes, x, y, shown, None if args.no_trust else pixels.resolved, {})
-    figure: Any = axes.figure
-    figure.savefig(path, dpi=150)
+        table, forbidden = self.table, ~np.isfinite(self.values)
+        i, k = np.nonzero(forbidden)
+        forbidden[i, k] = self._forbidden(table.x.values[i], table.y.values[k])
+        why = "the energy forbids it"
+        shown = shown_of(self.values, table.show, self.reducer, forbidden, why)
+        (axes,) = new_axes(MAP_SIZE, new_figure=Figure)
+        x, y = (_axis(self.case, axis) for axis in (table.x, table.y))
+        draw_map(axes, x, y, shown, None if self.args.no_trust else self.resolved, {})
+        figure: Any = axes.figure
+        figure.savefig(path, dpi=150)
 
 
 def _axis(case: Case, axis: MapAxis) -> Axis:

@@ -17,8 +17,7 @@ from pendcore.derive.narration.page import Page
 from pendcore.derive.report.pictures import lettering
 from pendcore.derive.report.quantities import number
 from pendcore.messages import Floats
-from pendcore.plotting import sketch
-from pendcore.plotting.sketch import Sketch, clear_direction, direction, name
+from pendcore.plotting.sketch import Sketch, clear_direction, direction
 
 A_ROW = 3
 """The largest number of bodies side by side."""
@@ -35,30 +34,30 @@ def mechanism(page: Page, q: Sequence[float]) -> Drawing:
     places -= places[0]  # a pivot that is moved is drawn at the origin
     total = float(np.hypot(*np.ptp(np.vstack([places, centers]), axis=0)))
     figure = Figure(figsize=(5.6, 4.6))
-    on = sketch.Sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), max(total, 0.6 * sum(lengths)))
+    on = Sketch(figure.add_axes((0.0, 0.0, 1.0, 1.0)), max(total, 0.6 * sum(lengths)))
     _frame(on, scene, places)
     for i, angle in enumerate(q, start=1):
         start, end = places[i - 1], places[i]
-        sketch.rod(on, start, end)
-        sketch.mass_center(on, centers[i - 1])
-        sketch.weight(on, centers[i - 1], rf"$\mathbf{{G}}_{{{i}}}$", 0.16)
+        on.rod(start, end)
+        on.mass_center(centers[i - 1])
+        on.weight(centers[i - 1], rf"$\mathbf{{G}}_{{{i}}}$", 0.16)
         reach = min(0.14, 0.3 * lengths[i - 1] / on.size)
-        sketch.angle_from_x(on, start, angle, rf"$q_{{{i}}}$", reach)
+        on.angle_from_x(start, angle, rf"$q_{{{i}}}$", reach)
         if i in page.equations.torques:  # around the joint, where nothing else is
             before = q[i - 2] + np.pi if i > 1 else -np.pi / 2
             clear = clear_direction([0.0, angle, angle / 2, before, np.pi / 2])
-            sketch.couple(on, start, clear, rf"$\tau_{{{i}}}$", 0.085)
+            on.couple(start, clear, rf"$\tau_{{{i}}}$", 0.085)
     _acting(on, scene.effects, places, q[-1])
     for i, angle in enumerate(q, start=1):
-        name(on, centers[i - 1], f"$C_{{{i}}}$", direction(angle - np.pi / 2))
+        on.name(centers[i - 1], f"$C_{{{i}}}$", direction(angle - np.pi / 2))
     for i, at in enumerate(places):
-        sketch.pin(on, at)
+        on.pin(at)
         taken = [q[j] + turn for j, turn in ((i, 0.0), (i - 1, np.pi)) if 0 <= j < len(q)]
-        name(on, at, f"${page.joint(i)}$", clear_direction([*taken, 0.0]))
+        on.name(at, f"${page.joint(i)}$", clear_direction([*taken, 0.0]))
     for i, angle in enumerate(q):
         parts = [places[i] + x * (places[i + 1] - places[i]) for x in (0.8, 0.7, 0.3, 0.9, 0.2)]
-        sketch.number(on, parts, i + 1, direction(angle - np.pi / 2))
-    sketch.finish(on, shrink=True)
+        on.number(parts, i + 1, direction(angle - np.pi / 2))
+    on.finish(shrink=True)
     start = (rf"$q_{{{i}}} = {number(degrees(angle))}$°" for i, angle in enumerate(q, start=1))
     return Drawing("mechanism", f"The chain at its start: {', '.join(start)}.", figure)
 
@@ -67,17 +66,17 @@ def _frame(on: Sketch, scene: Scene, places: Floats) -> None:
     """Draw the ground, the axes with the origin in the pivot, and which way gravity pulls."""
     size, pivot = on.size, places[0]
     above = places[1, 1] >= -0.2 * size  # the bracket is where the first link is not
-    sketch.ground(on, pivot, above=above)
+    on.ground(pivot, above=above)
     corner = pivot + size * np.array([[0.1, -0.09], [-0.1, -0.09]]) * [1.0, 1.0 if above else -1.0]
-    name(on, corner, "$0$", np.array([1.0, 0.0]))
+    on.name(corner, "$0$", np.array([1.0, 0.0]))
     for axis, text in enumerate(("$x$", "$y$")):
         in_the_way = np.abs(places[1:2, 1 - axis]).min() < 0.1 * size and places[1, axis] > 0
         reach = places[1, axis] + 0.25 * size if in_the_way else 0.52 * size
-        sketch.arrow(on, pivot, reach * np.eye(2)[axis], text, zorder=2, lw=0.9)
+        on.arrow(pivot, reach * np.eye(2)[axis], text, zorder=2, lw=0.9)
     if scene.gravity:
         at = np.array([min(0.0, *places[:, 0]) - 0.28 * size, 0.14 * size])
         down = np.array([0.0, 0.16 * size * np.sign(scene.gravity)])
-        sketch.arrow(on, at, down, "$g$", on.theme.weight)
+        on.arrow(at, down, "$g$", on.theme.weight)
 
 
 def _acting(on: Sketch, effects: Sequence[Any], places: Floats, last: float) -> None:
@@ -85,15 +84,15 @@ def _acting(on: Sketch, effects: Sequence[Any], places: Floats, last: float) -> 
     if any(effect.kind == "payload" for effect in effects):
         on.disc(places[-1], 0.045, facecolor=on.theme.quiet, zorder=4)
         edge = [places[-1] + 0.045 * on.size * direction(last + turn) for turn in (0, 1, -1)]
-        name(on, edge, "$m_p$", direction(last))
+        on.name(edge, "$m_p$", direction(last))
     side = np.array([-1.0 if places[1, 0] >= 0.0 else 1.0, 0.0])
     for effect in effects:
         if effect.kind == "driven_pivot":
             beside = 0.24 * on.size * side
             for along, law in zip(np.eye(2), (effect.x, effect.y), strict=True):
                 for sense in (1, -1) if law is not None else ():
-                    sketch.arrow(on, beside, 0.08 * sense * on.size * along, color=on.theme.couple)
-            name(on, beside, r"$\mathbf{r}_A(t)$", side)
+                    on.arrow(beside, 0.08 * sense * on.size * along, color=on.theme.couple)
+            on.name(beside, r"$\mathbf{r}_A(t)$", side)
 
 
 @lettering
@@ -116,7 +115,7 @@ def free_bodies(page: Page, q: Sequence[float], *, forces: bool = True) -> Drawi
         else:
             title, on = "payload", _payload(sheet, page, forces=forces)
         sheet.text(0.5, 0.98, title, transform=sheet.transAxes, ha="center", va="top")
-        sketch.finish(on, above=TITLE)
+        on.finish(above=TITLE)
     if not forces:
         words = "The links, to be completed into free-body diagrams."
         return Drawing("links", words, figure)
@@ -131,17 +130,17 @@ def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sket
     """Draw a link with its mass centre, the names of its ends, and all that acts on it."""
     link, equations, write = page.derivation.scene.links[i - 1], page.equations, page.s.latex
     along, back = direction(angle), angle + np.pi
-    on = sketch.Sketch(axes, max(link.length, abs(link.center)))
+    on = Sketch(axes, max(link.length, abs(link.center)))
     start, end, center = np.zeros(2), link.length * along, link.center * along
-    sketch.rod(on, start, end)
-    sketch.mass_center(on, center)
-    name(on, center, f"$C_{{{i}}}$", direction(angle - np.pi / 2))
+    on.rod(start, end)
+    on.mass_center(center)
+    on.name(center, f"$C_{{{i}}}$", direction(angle - np.pi / 2))
     for place, towards, joint in ((start, angle, i - 1), (end, back, i)):
-        sketch.pin(on, place)
-        name(on, place, f"${page.joint(joint)}$", _clear(towards))
+        on.pin(place)
+        on.name(place, f"${page.joint(joint)}$", _clear(towards))
     if not forces:
         return on
-    sketch.weight(on, center, f"${write(page.s.masses[i - 1])} g$", 0.3)
+    on.weight(center, f"${write(page.s.masses[i - 1])} g$", 0.3)
     _forces(on, start, angle, equations.near_forces[i - 1], page)
     _forces(on, end, back, equations.far_forces[i - 1], page)
     couples = [(start, angle, equations.joint_couple(i), 1.0)]
@@ -150,10 +149,10 @@ def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sket
         couples.append((end, back, equations.payload.moment.inertia, -1.0))
     for place, towards, couple, sense in couples:
         if couple != 0:
-            sketch.couple(on, place, _clear(towards), f"${write(couple)}$", sense=sense)
+            on.couple(place, _clear(towards), f"${write(couple)}$", sense=sense)
     for k, load in enumerate(load for load in equations.loads if load.link == i):
-        sketch.arrow(
-            on, (0.75 - 0.12 * k) * end, 0.24 * on.size * direction(angle + np.pi / 2),
+        on.arrow(
+            (0.75 - 0.12 * k) * end, 0.24 * on.size * direction(angle + np.pi / 2),
             f"${page.load(load)}$", on.theme.load,
             arriving=bool(np.cos(angle) > 0.0),  # on the side where the weight is not
         )  # fmt: skip
@@ -162,20 +161,20 @@ def _link(axes: Axes, page: Page, i: int, angle: float, *, forces: bool) -> Sket
 
 def _payload(axes: Axes, page: Page, *, forces: bool) -> Sketch:
     """Draw the body at the tip, with its weight and what the last link does to it."""
-    payload, on, at = page.equations.payload, sketch.Sketch(axes, 1.0), np.zeros(2)
+    payload, on, at = page.equations.payload, Sketch(axes, 1.0), np.zeros(2)
     on.disc(at, 0.09, facecolor=on.theme.line, zorder=3)
-    sketch.mass_center(on, at)
-    name(on, 0.09 * direction(-np.pi / 4), f"${page.joint(page.n)}$", direction(-np.pi / 4))
+    on.mass_center(at)
+    on.name(0.09 * direction(-np.pi / 4), f"${page.joint(page.n)}$", direction(-np.pi / 4))
     for side in np.eye(2):  # as large as a link is drawn
         on.drawn.append((0.5 * np.array([-side, side]), 0.0))
     if forces and payload is not None:
         mass = page.s.latex(payload.mass)
-        sketch.weight(on, at, f"${f'({mass})' if payload.mass.is_Add else mass} g$", 0.36)
+        on.weight(at, f"${f'({mass})' if payload.mass.is_Add else mass} g$", 0.36)
         x, y = payload.force
         _forces(on, at, np.pi / 4, (-x, -y), page, 0.36)
         if payload.inertia != 0:
             couple = f"${page.s.latex(payload.moment.inertia)}$"
-            sketch.couple(on, at, direction(0.8), couple, 0.16)
+            on.couple(at, direction(0.8), couple, 0.16)
     return on
 
 
@@ -190,8 +189,8 @@ def _forces(
         if component == 0:
             continue
         sign = -1.0 if component.could_extract_minus_sign() else 1.0
-        sketch.arrow(
-            on, at, reach * sign * on.size * along, f"${page.s.latex(int(sign) * component)}$",
+        on.arrow(
+            at, reach * sign * on.size * along, f"${page.s.latex(int(sign) * component)}$",
             on.theme.force,
             arriving=sign * float(along @ direction(link)) > np.cos(np.radians(25)),
         )  # fmt: skip

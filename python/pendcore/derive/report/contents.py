@@ -5,12 +5,12 @@ Both are templates, in which ``@{name}`` alone in a paragraph stands for blocks,
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import count
 from math import degrees
 from pathlib import Path
-from string import Template
 from typing import Any
 
 from sympy import Expr
@@ -35,12 +35,6 @@ ROOM = r"\qquad" * 7
 """Room in which an acceleration is written by hand."""
 
 
-class AtSign(Template):
-    """A text with places like ``@{chain}``: dollars belong to LaTeX."""
-
-    delimiter = "@"
-
-
 def filled(name: str, parts: Mapping[str, Any]) -> list[Block]:
     """Return the blocks of a template, of texts and lists of blocks; empty ones are left out."""
     found: list[Block] = []
@@ -50,7 +44,7 @@ def filled(name: str, parts: Mapping[str, Any]) -> list[Block]:
         if not isinstance(blocks := parts.get(key, ""), str):
             found += blocks
             continue
-        text = AtSign(text).substitute(parts)
+        text = re.sub(r"@{(\w+)}", lambda place: str(parts[place[1]]), text)
         hashes, _, title = text.partition(" ")
         if hashes in ("##", "###"):
             found.append(Heading(len(hashes), title))
