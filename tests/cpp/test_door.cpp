@@ -147,6 +147,19 @@ TEST_CASE("equations at a state are those of a run, and of each other") {
   CHECK_THROWS_WITH(Equations{heavier}, doctest::Contains("link 2: mass = -1.0"));
 }
 
+TEST_CASE("mass centres accelerate with the pivot, along their links and across them") {
+  Scene scene = Scene::textbook();
+  const Sinusoid wave{.amplitude = 0.5, .angular_frequency = 2.0, .phase = 0.5 * M_PI};
+  scene.effects = {DrivenPivot{.x = wave}};  // accelerates by -2 m/s^2 at t = 0
+  // u_1 = (1, 0), n_1 = (0, 1), u_2 = (0, 1), n_2 = (-1, 0)
+  const Points found =
+      mass_center_accelerations(scene, 0.0, {0.0, 0.5 * M_PI}, {2.0, 3.0}, {5.0, 7.0});
+  Points wanted(2, 2);
+  wanted << -2.0 - 0.5 * 4.0, 0.5 * 5.0,        // a_P0 + c_1 (qdd_1 n_1 - qd_1^2 u_1)
+      -2.0 - 4.0 - 0.5 * 7.0, 5.0 - 0.5 * 9.0;  // a_P1 + c_2 (qdd_2 n_2 - qd_2^2 u_2)
+  CHECK((found - wanted).cwiseAbs().maxCoeff() < 1e-14);
+}
+
 TEST_CASE("a refused start is told in no language's words") {
   const double inf = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH(run_of(inf), "end of the run = inf: must be finite (s)");

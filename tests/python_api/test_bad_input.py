@@ -245,6 +245,8 @@ VALUE_ERRORS = [
     ("link 2: center = nan: must be finite (m", lambda: rod_and(center=nan)),
     ("link 2: inertia = -1.0: must be finite and >= 0 (kg m", lambda: rod_and(inertia=-1)),
     ("link 2: inertia = inf: must be finite and >= 0", lambda: rod_and(inertia=inf)),
+    ("link 1: inertia about its joint, with what it carries, = inf: must be finite (kg m^2)",
+     lambda: pc.Scene(links=[pc.Link(mass=1, length=1e160, center=0, inertia=1), ROD])),
     *[(f"{name}: is too large: must be below 1.8e308 (", partial(rod_and, **{name: 10**size}))
       for name in ("mass", "length", "center", "inertia") for size in (400, 5000)],
     *[(f"gravity = {value}: must be finite (m/s", partial(BOOK.replace, gravity=value))

@@ -10,7 +10,7 @@ SharedWork::SharedWork(std::size_t count, const EnsembleLimits& limits)
     : count_(count), limits_(limits) {
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t wanted = limits.workers > 0 ? limits.workers : processors;
-  workers_ = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(count, 1));
+  workers_ = std::clamp<std::size_t>(wanted, 1, count);
   // Some milliseconds of work, and in a small ensemble few enough that every worker gets some.
   constexpr std::size_t usual_chunk = 256;
   chunk_ = std::clamp<std::size_t>(count / (8 * workers_), 1, usual_chunk);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <stdexcept>
 
 #include "scene/effects_of_scene.hpp"
 
@@ -21,9 +20,6 @@ Recorder::Recorder(Solution& solution, const StepOutput& output, const Scene& sc
       dimension_(static_cast<std::size_t>(output.dimension())),
       degree_(static_cast<std::size_t>(output.interpolant_degree())) {
   const std::vector<Event>& events = solution.options.events;
-  if (!events.empty() && degree_ > highest_degree) {
-    throw std::invalid_argument("events: the dense output of this method has too high a degree");
-  }
   if (!events.empty()) finder_.emplace(scene, events, solution.found, passed_events, solution.t0);
   solution_.t.reserve(solution_.options.t_eval.size());
   solution_.states.reserve(solution_.options.t_eval.size() * dimension_);

@@ -47,8 +47,6 @@ class ChainOf {
  public:
   ChainOf(const Scene& scene, std::shared_ptr<EffectsInRows<Pack<4>>> effects);
 
-  int links() const { return n_; }
-
   /// qdd (rad/s^2) from the time (s), angles (rad) and rates (rad/s), (n) each. Defined in
   /// chain_recursion.hpp.
   PENDCORE_INLINE void accelerations(double t, const Number* q, const Number* qd,

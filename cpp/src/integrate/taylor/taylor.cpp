@@ -5,8 +5,11 @@
 
 #include "arithmetic/order_of_series.hpp"
 #include "arithmetic/power.hpp"
+#include "integrate/events/root.hpp"
 
 namespace pendcore {
+
+static_assert(highest_order <= highest_degree, "events are zeros of the series");
 
 int taylor_order(double tolerance) {
   constexpr double log10_of_2 = 0.30102999566398120;
