@@ -71,7 +71,8 @@ def test_bounces_without_end(restitution: float) -> None:
 
 
 @pytest.mark.few_cases
-@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55, 303, 304, 305, 428])
+# A reduced sweep takes 0, 16, 55 and the last, whose joint with friction starts at rest.
+@pytest.mark.parametrize("seed", [0, 3, 10, 15, 16, 21, 33, 39, 50, 55, 303, 305, 428, 304])
 def test_random_runs_have_the_derivatives_of_complex_numbers(seed: int) -> None:
     verdict = judged(seed)
     assert verdict.kind == "right", verdict

@@ -44,11 +44,11 @@ def exact(
     rig, y = numbers.rig(), numbers.y
 
     def rates(t: float, y: Any) -> Any:
-        return np.array([*y[n:], *rig.motion(t, list(y[:n]), list(y[n:])).accelerations])
+        return np.array([*y[n:], *rig.accelerations(t, list(y[:n]), list(y[n:]))])
 
     found, t = [], 0.0
     for end in times:
-        steps = max(1, round((end - t) / 0.02))
+        steps = max(1, round((end - t) / 0.03))
         for k in range(steps):
             y = midpoint_rule(rates, t + k * (end - t) / steps, y, (end - t) / steps)
         t = end

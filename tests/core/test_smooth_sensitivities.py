@@ -11,7 +11,8 @@ from derivatives.random_run import RandomRun, by_pendcore
 from derivatives.smooth_runs import by_differences
 from reference.newton_euler import Body, uniform_rod
 
-SEEDS = [*range(0, 60, 2), 1, 5, 7]
+SEEDS = [*range(0, 20, 2), 42, *range(22, 42, 2), 20, *range(44, 60, 2), 1, 5, 7]
+"""A reduced sweep takes 0, 22, 20 and 7: short ones with two, three, four and six links."""
 
 
 @pytest.mark.few_cases
@@ -22,8 +23,10 @@ def test_a_random_run_has_its_derivatives(seed: int) -> None:
     assert (verdict.kind, verdict.names) == ("right", 0), verdict
 
 
-@pytest.mark.parametrize("column", [0, 5, -1])
-def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("column", "looks"), [(0, 2), (5, 1), (-1, 1)])
+def test_a_wrong_derivative_is_seen(
+    column: int, looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A share of 3e-12 in any column is too much."""
 
     def spoilt(case: RandomRun, **how: float) -> tuple[np.ndarray, np.ndarray, str]:
@@ -33,6 +36,7 @@ def test_a_wrong_derivative_is_seen(column: int, monkeypatch: pytest.MonkeyPatch
         return end, columns, why
 
     monkeypatch.setattr(campaign, "by_pendcore", spoilt)
+    monkeypatch.setattr(campaign, "LOOKS", campaign.LOOKS[:looks])
     assert judged_smooth(28).kind == "wrong"
 
 

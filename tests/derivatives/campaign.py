@@ -28,6 +28,9 @@ ALLOWED = 1e-8
 ALLOWED_IF_SMOOTH = 1e-12
 """Errors of smooth runs are shares of the largest entry by a name, or by the start if larger."""
 
+LOOKS = [(1e-16, 0.02), (1e-19, 0.001)]
+"""Tolerance and longest step, s, of the reference of a smooth run: a second look if it is wrong."""
+
 
 class Verdict(NamedTuple):
     """What one run came to: its error as a share of the largest entry, and what was said of it."""
@@ -56,7 +59,7 @@ def judged_smooth(seed: int) -> Verdict:
     changes = {name: case.changes[name] / max(sizes[name], transition) for name in names}
     found = columns[:, np.isfinite(columns).all(axis=0)] @ [*changes.values()]
     verdict = Verdict(seed, 0, refused, np.nan, "no reference", "a bend may only be touched")
-    for how in ((1e-16, 0.02), (1e-19, 0.001)):
+    for how in LOOKS:
         try:
             right_end, right = smooth_runs.by_differences(case, changes, *how)
         except AssertionError:

@@ -151,22 +151,31 @@ int main() {{
 
 
 @pytest.fixture(scope="module")
-def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
+def looked_at(request: pytest.FixtureRequest) -> list[str]:
+    """The scenes that some test looks at."""
+    run = [item.nodeid for item in request.session.items]
+    return [name for name in SCENES if any(one.endswith(f"[{name}]") for one in run)]
+
+
+@pytest.fixture(scope="module")
+def told_by_cpp(
+    looked_at: list[str], tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Floats]:
     """Return dy/dt, forces and energies: all headers in one program, no warning allowed."""
     folder = tmp_path_factory.mktemp("headers")
-    for name in SCENES:
+    for name in looked_at:
         (folder / f"{name}.hpp").write_text(derived(name).to_cpp("Chain", name))
     (folder / "main.cpp").write_text(
         MAIN.format(
-            includes="\n".join(f'#include "{name}.hpp"' for name in SCENES),
-            calls="\n".join(f'  tell<{name}::Chain>("{name}");' for name in SCENES),
+            includes="\n".join(f'#include "{name}.hpp"' for name in looked_at),
+            calls="\n".join(f'  tell<{name}::Chain>("{name}");' for name in looked_at),
         )
     )
     command = ["g++", "-std=c++17", "-O1", *WARNINGS, "main.cpp", "-o", "main"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     lines = []
-    for name in SCENES:
+    for name in looked_at:
         core = asked(name)
         for row in np.column_stack([core.t, core.q, core.qd]):
             lines.append(" ".join([name, *map(repr, row.tolist())]))
@@ -175,7 +184,9 @@ def told_by_cpp(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
         [folder / "main"], input="\n".join(lines), capture_output=True, text=True, check=True
     ).stdout
     rows = iter(said.splitlines())
-    return {name: np.array([next(rows).split() for _ in range(STATES)], float) for name in SCENES}
+    return {
+        name: np.array([next(rows).split() for _ in range(STATES)], float) for name in looked_at
+    }
 
 
 @pytest.mark.few_cases
@@ -208,11 +219,13 @@ def woven(q: Floats, qd: Floats) -> Floats:
 
 
 @pytest.fixture(scope="module")
-def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats]:
+def told_by_octave(
+    looked_at: list[str], tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Floats]:
     """Return dx by the function file, by the file written out, and by the inline function."""
     folder = tmp_path_factory.mktemp("octave")
     script = ["1;"]
-    for name in SCENES:
+    for name in looked_at:
         core, made = asked(name), derived(name)
         (folder / f"{name}.m").write_text(made.to_octave(name))
         (folder / f"{name}_long.m").write_text(written_out(made, f"{name}_long"))
@@ -226,7 +239,7 @@ def told_by_octave(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Floats
             "end",
         ]
     rows = iter(in_octave("\n".join(script) + "\n", folder))
-    return {name: np.array([next(rows) for _ in range(STATES)]) for name in SCENES}
+    return {name: np.array([next(rows) for _ in range(STATES)]) for name in looked_at}
 
 
 @pytest.mark.few_cases

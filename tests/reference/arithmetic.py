@@ -39,22 +39,26 @@ COMPLEX = Arithmetic(
 
 
 def eliminate(matrix: list[list[Number]], right: list[Number]) -> list[Number]:
-    """Gaussian elimination with row pivoting, which passes over the many zeros."""
+    """Gaussian elimination with row pivoting, which passes over the many zeros.
+
+    It begins with the last unknown: those of a chain that stand there are forces in the joints,
+    which few of its rows have.
+    """
     rows = [[*row, side] for row, side in zip(matrix, right, strict=True)]
     n = len(rows)
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda i: abs(rows[i][k]))
+    for k in reversed(range(n)):
+        pivot = max((i for i in range(k + 1) if rows[i][k]), key=lambda i: abs(rows[i][k]))
         rows[k], rows[pivot] = rows[pivot], rows[k]
-        filled = [j for j in range(k, n + 1) if rows[k][j]]
-        for row in rows[k + 1 :]:
+        filled = [j for j in (*range(k), n) if rows[k][j]]
+        for row in rows[:k]:
             if row[k]:
                 share = row[k] / rows[k][k]
                 for j in filled:
                     row[j] -= share * rows[k][j]
-    unknowns: list[Number] = [0] * n
-    for k in reversed(range(n)):
-        known = sum(rows[k][j] * unknowns[j] for j in range(k + 1, n) if rows[k][j])
-        unknowns[k] = (rows[k][n] - known) / rows[k][k]
+    unknowns: list[Number] = []
+    for row, k in zip(rows, range(n), strict=True):
+        known = sum(a * x for a, x in zip(row, unknowns, strict=False) if a)
+        unknowns.append((row[n] - known) / row[k])
     return unknowns
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
+
+import gmpy2
 
 from reference.arithmetic import Arithmetic, Number
 
@@ -44,13 +47,20 @@ def second_derivatives(
     return solve(matrix, right)
 
 
+@lru_cache(maxsize=64)
+def _curvatures(
+    knots: tuple[Number, ...], values: tuple[Number, ...], arithmetic: Arithmetic, bits: int
+) -> list[Number]:
+    return second_derivatives(knots, values, arithmetic.solve)
+
+
 def natural_spline(
     t: Number, knots: Sequence[float], values: Sequence[float], arithmetic: Arithmetic
 ) -> tuple[Number, Number, Number]:
     """Return value, rate and acceleration at a time between the first knot and the last."""
     number = arithmetic.number
-    t, knots, values = number(t), [number(k) for k in knots], [number(x) for x in values]
-    curvatures = second_derivatives(knots, values, arithmetic.solve)
+    t, knots, values = number(t), (*map(number, knots),), (*map(number, values),)
+    curvatures = _curvatures(knots, values, arithmetic, gmpy2.get_context().precision)
     i = max(k for k in range(len(knots) - 1) if knots[k] <= t or k == 0)
     h, before, after = knots[i + 1] - knots[i], t - knots[i], knots[i + 1] - t
     c0, c1 = curvatures[i], curvatures[i + 1]

@@ -111,6 +111,7 @@ def chain_equations(
     n, g = len(links), number(gravity)
     along = [(arithmetic.cos(number(angle)), arithmetic.sin(number(angle))) for angle in q]
     across = [(-sine, cosine) for cosine, sine in along]
+    towards_pivot = [[x * number(rate) ** 2 for x in u] for u, rate in zip(along, qd, strict=True)]
     payload = 3 * n  # the first of three columns each: force and couple on it
     lock = payload + 3 * len(loads.payloads)
     unknowns = lock + len(loads.locked)
@@ -125,9 +126,9 @@ def chain_equations(
     def inertial(row: list[Number], side: Sum, body: Body, last: int, axis: int) -> None:
         """Mass times acceleration of a point on link ``last``, and the weight."""
         for k in range(last + 1):
-            arm = links[k].length if k < last else body.center
-            row[k] += body.mass * arm * across[k][axis]
-            side.add(body.mass * arm * along[k][axis] * number(qd[k]) ** 2)
+            moment = body.mass * (links[k].length if k < last else body.center)
+            row[k] = moment * across[k][axis]
+            side.add(moment * towards_pivot[k][axis])
         side.add(-body.mass * loads.pivot_acceleration[axis], body.mass * loads.pivot_size)
         side.add(body.mass * g * axis)
 
