@@ -1,10 +1,7 @@
 """Sphinx's configuration of the site: `make site` builds it, without network.
 
-The pages are the Markdown files of docs/, as they read in the repository. Their Python is executed
-while the site is built (executed.py). The pages of the Python reference come from docstrings
-(python_reference.py), those of the C++ reference from the headers (cpp_reference.py), those of the
-examples and notebooks from their files (pages_of_files.py), those of the gallery by running its
-files (gallery_pages.py). The first page shows a run alive. Colours and sizes are the house's.
+The pages are the Markdown files of docs/, as they read in the repository; the modules beside this
+one write the others. The first page shows a run alive. Colours and sizes are the house's.
 """
 
 from __future__ import annotations
@@ -30,7 +27,6 @@ from pendcore.plotting import css_variables  # noqa: E402
 from sphinx.application import Sphinx  # noqa: E402
 
 project = "pendcore"
-author = "pendcore maintainers"
 copyright = "pendcore maintainers"
 version = release = pc.__version__
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from pages_of_files import toctree
+
 ABOUT = re.compile(r"\A/// \\file\n((?:///.*\n)+)")
 DIRECTIVE = re.compile(r"^#(?:.*\\\n)*.*\n", re.MULTILINE)
 PAGES = {
@@ -25,26 +27,29 @@ def write(headers: Path, folder: Path) -> None:
     folder.mkdir(parents=True)
     shown = {headers / "pendcore.hpp"}
     for title, names in PAGES.items():
-        text = [f"# {title}", ""]
-        for name in names:
-            for header in sorted(headers.glob(f"{name}.hpp")):
-                text += section(headers, header)
-                shown.add(header)
-        (folder / f"{title.lower()}.md").write_text("\n".join(text) + "\n")
+        found = [header for name in names for header in sorted(headers.glob(f"{name}.hpp"))]
+        shown.update(found)
+        sections = [section(headers, header) for header in found]
+        (folder / f"{title.lower()}.md").write_text("\n".join([f"# {title}\n", *sections]))
     if missing := {*headers.rglob("*.hpp")} - shown:
         raise ValueError(f"PAGES has no place for {sorted(map(str, missing))}")
     about = "The headers, from their comments. A first program: [](../../how_to/cpp.md)."
-    pages = [title.lower() for title in PAGES]
-    lines = ["# C++", "", about, "", ":::{toctree}", ":maxdepth: 1", "", *pages, ":::"]
-    (folder / "index.md").write_text("\n".join(lines) + "\n")
+    tree = toctree(map(str.lower, PAGES), ":maxdepth: 1")
+    (folder / "index.md").write_text(f"# C++\n\n{about}\n\n{tree}")
 
 
-def section(home: Path, header: Path) -> list[str]:
-    text = header.read_text()
-    about = ABOUT.match(text)
-    lines = [f"## {header.relative_to(home)}", ""]
-    if about:
-        lines += ["```text", *(line[4:] for line in about.group(1).splitlines()), "```", ""]
-    code = text[about.end() :] if about else text
-    code = DIRECTIVE.sub("", code)
-    return [*lines, ":::{dropdown} Declarations", "```cpp", code.strip(), "```", ":::", ""]
+def section(home: Path, header: Path) -> str:
+    _, comment, code = ABOUT.split(header.read_text())
+    about = "\n".join(line[4:] for line in comment.splitlines())
+    return f"""## {header.relative_to(home)}
+
+```text
+{about}
+```
+
+:::{{dropdown}} Declarations
+```cpp
+{DIRECTIVE.sub("", code).strip()}
+```
+:::
+"""

@@ -66,11 +66,8 @@ def write_cases(doctree: nodes.document) -> None:
     """Write the case files that a page shows, each under the name that it gives itself."""
     for block in doctree.findall(nodes.literal_block):
         if block.get("language") == "toml":
-            try:
-                name = tomllib.loads(block.astext()).get("name")
-            except tomllib.TOMLDecodeError:
-                continue
-            if name:
+            with contextlib.suppress(tomllib.TOMLDecodeError, KeyError):
+                name = tomllib.loads(block.astext())["name"]
                 Path(f"{name}.toml").write_text(block.astext())
 
 
@@ -130,5 +127,4 @@ def add_below(
     added += [nodes.image(uri=path, alt="the figure that these lines draw") for path in figures]
     if html:
         added.append(nodes.raw("", f"<div class='shown'>{html}</div>", format="html"))
-    for node in reversed(added):
-        parent.insert(at, node)
+    parent.insert(at, added)

@@ -7,16 +7,16 @@ says. Nothing of that is committed.
 
 from __future__ import annotations
 
-import ast
 import math
 import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pendcore as pc
+from pages_of_files import parts_of, toctree
 from sphinx.application import Sphinx
 
 FILMS = Path("_static/gallery")
@@ -26,15 +26,6 @@ GROUPS = {
     "Friction, contact and wind": "stick_slip with_and_without bouncing_rod bell in_the_wind",
     "Held and controlled": "caught swing_up wrecking_ball",
 }
-
-
-class Scene(NamedTuple):
-    """A file of the gallery: its name, title, what it is about, and its code."""
-
-    name: str
-    title: str
-    about: str
-    code: str
 
 
 def write(examples: Path, folder: Path, site: Path) -> None:
@@ -47,10 +38,13 @@ def write(examples: Path, folder: Path, site: Path) -> None:
         raise ValueError("each file of examples/gallery has to be in one of GROUPS")
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         list(workers.map(lambda file: _run(file, static), files))
-    scenes = [_read(file) for file in files]
-    for scene in scenes:
-        (folder / f"{scene.name}.md").write_text(_page(scene))
-    (folder / "index.md").write_text(_index(scenes))
+    cards = {}
+    for file in files:
+        told, code = parts_of(file)
+        title, about = told.split(".\n\n", 1)
+        cards[file.stem] = _card(file.stem, title, about)
+        (folder / f"{file.stem}.md").write_text(_page(file.stem, title, about, code))
+    (folder / "index.md").write_text(_index(cards))
     for kind, effect in pc.effects.kinds().items():
         _film_of_effect(effect.description, static / f"effect_{kind}.mp4")
 
@@ -98,13 +92,6 @@ def add_film(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = f"{title}\n\n```{{raw}} html\n{shown}\n```\n{rest}"
 
 
-def _read(file: Path) -> Scene:
-    text = file.read_text()
-    title, _, about = (ast.get_docstring(ast.parse(text)) or "").partition("\n")
-    code = text.split('"""', 2)[2].replace("from __future__ import annotations\n", "").strip()
-    return Scene(file.stem, title.rstrip("."), about.strip(), code)
-
-
 def player(name: str, title: str) -> str:
     """Return a film as it plays in a page; it waits where less motion is wanted."""
     return (
@@ -113,52 +100,47 @@ def player(name: str, title: str) -> str:
     )
 
 
-def _card(scene: Scene) -> str:
+def _card(name: str, title: str, about: str) -> str:
     """Return the card of a scene: its small film, with a picture until it plays."""
-    source = f"../{FILMS}/{scene.name}_card"
-    return f""":::{{grid-item-card}} {scene.title}
-:link: {scene.name}
+    source = f"../{FILMS}/{name}_card"
+    return f""":::{{grid-item-card}} {title}
+:link: {name}
 :link-type: doc
 
 ```{{raw}} html
 <video class="film card-film" src="{source}.mp4" poster="{source}.jpg" muted loop
-playsinline preload="none" aria-label="{scene.title}"></video>
+playsinline preload="none" aria-label="{title}"></video>
 ```
 
-{scene.about.partition(". ")[0].partition(": ")[0].rstrip(".")}.
+{about.partition(". ")[0].partition(": ")[0].rstrip(".")}.
 :::
 """
 
 
-def _page(scene: Scene) -> str:
-    return f"""# {scene.title}
+def _page(name: str, title: str, about: str, code: str) -> str:
+    code = code.removeprefix("from __future__ import annotations").strip()
+    return f"""# {title}
 
-{scene.about}
+{about}
 
 ```{{raw}} html
-{player(scene.name, scene.title)}
+{player(name, title)}
 ```
 
-<p><a class="reference external" href="../{FILMS}/{scene.name}.html">Change it in your
+<p><a class="reference external" href="../{FILMS}/{name}.html">Change it in your
 browser</a>: a page with the core inside.</p>
 
 ```python
-{scene.code}
+{code}
 ```
 
-{{download}}`{scene.name}.py <../../examples/gallery/{scene.name}.py>`
+{{download}}`{name}.py <../../examples/gallery/{name}.py>`
 """
 
 
-def _index(scenes: list[Scene]) -> str:
-    cards = {scene.name: _card(scene) for scene in scenes}
-    parts = [
-        "# Gallery",
-        "Each is a dozen lines of Python, a film, and a page to change it in.",
-    ]
+def _index(cards: dict[str, str]) -> str:
+    parts = ["# Gallery", "Each is a dozen lines of Python, a film, and a page to change it in."]
     for title, names in GROUPS.items():
         shown = "".join(cards[name] for name in names.split())
         parts += [f"## {title}", f"::::{{grid}} 1 2 2 3\n:gutter: 3\n\n{shown}::::"]
-    tree = "\n".join(cards)
-    parts.append(f":::{{toctree}}\n:hidden:\n\n{tree}\n:::\n")
-    return "\n\n".join(parts)
+    return "\n\n".join([*parts, toctree(cards, ":hidden:")])

@@ -7,8 +7,8 @@ an example as if it were run from its file (executed.py).
 
 from __future__ import annotations
 
-import ast
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 NOTEBOOKS = ("textbook_swing", "chaos_and_trust", "friction_and_stops", "saddle_transport")
@@ -17,10 +17,8 @@ NOTEBOOKS = ("textbook_swing", "chaos_and_trust", "friction_and_stops", "saddle_
 def write_examples(files: Path, folder: Path) -> None:
     pages = {}
     for path in sorted(files.glob("[0-9]*.py")):
-        text = path.read_text()
-        about = ast.get_docstring(ast.parse(text)) or ""
+        about, code = parts_of(path)
         title = about.partition("\n")[0].rstrip(".").partition(":")[0]
-        code = text.split('"""', 2)[2].strip()
         pages[path] = f"# {title}\n\n{about}\n\n```python\n{code}\n```\n"
     _write(folder, "# Examples\n\nPrograms of one screen, with what they print and draw.", pages)
 
@@ -41,12 +39,23 @@ def write_notebooks(files: Path, folder: Path) -> None:
     _write(folder, f"# Notebooks\n\n{about}", pages)
 
 
+def parts_of(program: Path) -> tuple[str, str]:
+    """Return what a program says of itself, and its code."""
+    _, about, code = program.read_text().split('"""', 2)
+    return about.strip(), code.strip()
+
+
+def toctree(pages: Iterable[str], option: str) -> str:
+    """Return the list of pages that the site's navigation reads."""
+    listed = "\n".join(pages)
+    return f":::{{toctree}}\n{option}\n\n{listed}\n:::\n"
+
+
 def _write(folder: Path, about: str, pages: dict[Path, str]) -> None:
     """Write pages, and one that lists them."""
     folder.mkdir(parents=True)
     for path, text in pages.items():
         file = f"../../examples/{'notebooks/' * (path.suffix == '.ipynb')}{path.name}"
         (folder / f"{path.stem}.md").write_text(f"{text}\n{{download}}`{path.name} <{file}>`\n")
-    tree = "\n".join(path.stem for path in pages)
-    index = f"{about}\n\n:::{{toctree}}\n:maxdepth: 1\n\n{tree}\n:::\n"
-    (folder / "index.md").write_text(index)
+    tree = toctree((path.stem for path in pages), ":maxdepth: 1")
+    (folder / "index.md").write_text(f"{about}\n\n{tree}")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from pages_of_files import toctree
 from sphinx.application import Sphinx
 
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?!https?://|mailto:|#)[^)#\s]+)(#[^)\s]*)?\)")
@@ -33,5 +34,5 @@ def for_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
     source[0] = LINK.sub(replaced, source[0])
     if page.endswith("/README"):
-        pages = "\n".join(dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", source[0])))
-        source[0] += f"\n\n:::{{toctree}}\n:hidden:\n\n{pages}\n:::\n"
+        pages = dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", source[0]))
+        source[0] += f"\n\n{toctree(pages, ':hidden:')}"

@@ -30,12 +30,6 @@ function labelled(name, field, ...more) {
   return element("div", { className: "parameter" }, [label, field, ...more]);
 }
 
-/** A menu of values, each with the text that it shows. */
-function menuOf(options, properties = {}) {
-  const shown = options.map(([value, text]) => new Option(text, value));
-  return element("select", properties, shown);
-}
-
 /** An interval for a slider about a value, within what the descriptor allows: "0 to 1", "> 0". */
 function interval(value, range) {
   const size = value === 0 ? 1 : 3 * Math.abs(value);
@@ -180,9 +174,9 @@ export class Controls {
   }
 
   #more() {
-    const named = ({ kind, name }) => [kind, name];
     const offered = this.kinds.filter(({ kind }) => kind in this.defaults);
-    const select = menuOf(offered.map(named), { ariaLabel: "Kind of effect" });
+    const options = offered.map(({ kind, name }) => new Option(name, kind));
+    const select = element("select", { ariaLabel: "Kind of effect" }, options);
     const add = () => {
       const copy = structuredClone(this.defaults[select.value]);
       for (const key of ["joint", "link"]) if (copy[key] > this.given.link.length) copy[key] = 1;
@@ -196,7 +190,8 @@ export class Controls {
   #method(run) {
     const { methods } = this;
     const offered = methods.includes(run.method) ? methods : [run.method, ...methods];
-    const select = menuOf(offered.map((one) => [one, one]));
+    const options = offered.map((one) => new Option(one));
+    const select = element("select", {}, options);
     select.value = run.method;
     select.addEventListener("change", () => {
       run.method = select.value;

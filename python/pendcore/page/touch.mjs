@@ -27,17 +27,13 @@ export function listenToKeys(canvas, page) {
 
 /** The wheel with Ctrl, or two fingers on a touchpad, look closer; a double click shows it all. */
 export function listenToWheel(canvas, page) {
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      if (!event.ctrlKey && !event.metaKey) return; // the page scrolls
-      event.preventDefault();
-      const factor = Math.exp(-CLOSER_A_PIXEL * event.deltaY);
-      page.view.enlarge(factor, [event.offsetX, event.offsetY]);
-      page.draw();
-    },
-    { passive: false },
-  );
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey) return; // the page scrolls
+    event.preventDefault();
+    const factor = Math.exp(-CLOSER_A_PIXEL * event.deltaY);
+    page.view.enlarge(factor, [event.offsetX, event.offsetY]);
+    page.draw();
+  });
   canvas.addEventListener("dblclick", () => {
     page.view.fit();
     page.draw();
@@ -84,13 +80,9 @@ export function listenToPointer(canvas, page) {
     page.changed();
   });
   // A finger that is not on a joint scrolls the page.
-  canvas.addEventListener(
-    "touchstart",
-    (event) => {
-      if (nearest(event.touches[0])) event.preventDefault();
-    },
-    { passive: false },
-  );
+  canvas.addEventListener("touchstart", (event) => {
+    if (nearest(event.touches[0])) event.preventDefault();
+  });
   canvas.addEventListener("pointermove", (event) => {
     if (held) {
       view.move(event.clientX - held[0], event.clientY - held[1]);

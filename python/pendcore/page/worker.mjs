@@ -136,8 +136,7 @@ scope.onmessage = async ({ data }) => {
     }
     core = await loading;
     const answer = tasks[data.task](data, (partial) => scope.postMessage({ partial }));
-    const moved = answer?.angles ? [answer.angles.buffer] : [];
-    scope.postMessage({ answer }, moved);
+    scope.postMessage({ answer });
   } catch (error) {
     scope.postMessage({ failure: String(error.message ?? error) });
   }
