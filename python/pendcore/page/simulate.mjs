@@ -5,8 +5,13 @@ export function simulateCase(core, given) {
   const { t_start, t_end, ...options } = given.run;
   const { link: links, gravity, effect: effects } = given;
   const scene = core.scene({ links, gravity, effects });
-  const { q: q0, qd: qd0 } = given.start;
-  return scene.simulate({ q0, qd0, t0: t_start ?? 0, t_end, ...options });
+  try {
+    const { q: q0, qd: qd0 } = given.start;
+    return scene.simulate({ q0, qd0, t0: t_start ?? 0, t_end, ...options });
+  } catch (error) {
+    scene.free();
+    throw error;
+  }
 }
 
 /** The same without the times that the case keeps: a state at any time, unless others say more. */

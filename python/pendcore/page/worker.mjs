@@ -136,7 +136,8 @@ scope.onmessage = async ({ data }) => {
     }
     core = await loading;
     const answer = tasks[data.task](data, (partial) => scope.postMessage({ partial }));
-    scope.postMessage({ answer });
+    const moved = answer?.angles ? [answer.angles.buffer] : [];
+    scope.postMessage({ answer }, moved);
   } catch (error) {
     scope.postMessage({ failure: String(error.message ?? error) });
   }
