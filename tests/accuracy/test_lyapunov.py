@@ -328,4 +328,4 @@ def test_the_finite_time_exponents_are_drawn() -> None:
     lines = found.plot(Figure().subplots())
     assert len(lines) == 4
     assert lines[0].get_ydata()[-1] == found.finite_time[-1, 0]
-    assert lines[0].axes.get_ylabel() == "finite-time Lyapunov exponents (1/s)"
+    assert lines[0].axes.get_ylabel() == "Lyapunov exponents (1/s)"

@@ -254,6 +254,9 @@ def test_it_says_until_when_it_is_right_once_that_is_known():
     short = pc.simulate(BOOK, q0=[1, 1], t_span=(0, 1))
     short.valid_until()
     assert "\n  right    to 0.1 rad to the end\n" in str(short)
+    end = pc.simulate(BOOK, q0=0.0, t_span=(0, 30), store="end")
+    assert end.valid_until() == 0.0
+    assert "\n  right    not to 0.1 rad at 30 s, and no earlier time is kept\n" in str(end)
 
 
 def test_it_has_a_line_of_the_accuracy_that_was_asked_for():

@@ -131,7 +131,7 @@ class LyapunovExponents:
         (ax,) = new_axes((6.4, 4.0)) if ax is None else (ax,)
         properties = {"color": theme_of(ax).ink, **line_properties}
         lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
-        ax.set(xlabel="t (s)", ylabel="finite-time Lyapunov exponents (1/s)")
+        ax.set(xlabel="t (s)", ylabel="Lyapunov exponents (1/s)")
         ax.axhline(0.0, color=theme_of(ax).quiet, linewidth=0.8, zorder=0)
         ax.margins(x=0)
         grid(ax)

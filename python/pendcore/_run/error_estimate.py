@@ -77,8 +77,9 @@ class ErrorEstimate:
         Returns
         -------
         float
-            The end of the run if the error stays within the limit; its start if the first error is
-            beyond the limit, or none is known. The error is assumed never to shrink.
+            The end of the run if the error stays within the limit; its start if the error at the
+            first time that is kept is beyond the limit, or none is known: a run that keeps only its
+            end knows no time between. The error is assumed never to shrink.
         """
         if of not in ("angle", "position"):
             raise ValueError(f'of = {of!r}: must be "angle" (rad) or "position" (a share)')

@@ -37,7 +37,10 @@ def rows_of(solution: Solution) -> list[tuple[str, str]]:
         rows.append(("t", f"{t[0]:.6g} ... {t[-1]:.6g} s, {len(t)} kept"))
     right = "not estimated yet: sol.valid_until() does, by a second run"
     if solution.known_error is not None:
-        right = f"to {LIMIT:g} rad {_until(solution, solution.known_error.valid_until(LIMIT))}"
+        until = solution.known_error.valid_until(LIMIT)
+        right = f"to {LIMIT:g} rad {_until(solution, until)}"
+        if len(t) and until != t[0] and until == solution.t_span[0]:
+            right = f"not to {LIMIT:g} rad at {t[0]:.4g} s, and no earlier time is kept"
     rows.append(("right", right))
     if solution.sensitivities is not None:
         rows.append(("sensitivities", _sensitivities(solution, solution.sensitivities)))
