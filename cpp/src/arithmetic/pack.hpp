@@ -18,7 +18,9 @@
 // In clones for processors that have the instruction, fma() calls it by name. GCC finds it in a
 // loop over the lanes, too, but so kernels compile in 0.55 to 0.8 of the time (lanes of eight: 13 s
 // of 23), as packs stay in registers from the beginning. Newer versions of GCC were not tried.
-#if PENDCORE_CLONES && defined(__OPTIMIZE__) && !defined(__SSE4_1__) && __GNUC__ == 12 && \
+// A source that is faster by the loop says so before it includes this.
+#ifdef PENDCORE_NAMES_FMA
+#elif PENDCORE_CLONES && defined(__OPTIMIZE__) && !defined(__SSE4_1__) && __GNUC__ == 12 && \
     !defined(__clang__)
 #define PENDCORE_NAMES_FMA 1
 // It makes the names known.

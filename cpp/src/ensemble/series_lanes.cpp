@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,11 @@ class SeriesRunner final : public LaneLoop<width_on(set)> {
       tightest = std::min(tightest, std::max(this->rtol_[i], this->atol_[i]));
     }
     this->prepare(all_.equations);
-    all_.expand_kernel = only<&expand_in_lanes<Form, Pack<width>>, set>();
+    if constexpr (std::is_same_v<Form, BareDoublePendulumSeries<Pack<4>>>) {
+      all_.expand_kernel = expand_bare_series_of_four();
+    } else {
+      all_.expand_kernel = only<&expand_in_lanes<Form, Pack<width>>, set>();
+    }
     all_.make_room(taylor_order(tightest));
     for (int i = 0; i < all_.size(); ++i) {
       all_.rtol[i] = broadcast<Pack<width>>(this->rtol_[i]);

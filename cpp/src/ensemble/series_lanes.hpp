@@ -24,6 +24,11 @@ PENDCORE_INLINE void expand_in_lanes(const Form* equations, const Real* t, const
   equations->expand(*t, y, *sigma, order, rows);
 }
 
+/// It is compiled apart.
+using ExpandBareSeriesOfFour =
+    decltype(&expand_in_lanes<BareDoublePendulumSeries<Pack<4>>, Pack<4>>);
+ExpandBareSeriesOfFour expand_bare_series_of_four();
+
 /// The lanes of the method of Taylor series on a form of the equations (series_equations.hpp). A
 /// state is (q, qd).
 template <class Form, int width>
