@@ -329,3 +329,6 @@ def test_the_finite_time_exponents_are_drawn() -> None:
     assert len(lines) == 4
     assert lines[0].get_ydata()[-1] == found.finite_time[-1, 0]
     assert lines[0].axes.get_ylabel() == "Lyapunov exponents (1/s)"
+    assert len({line.get_color() for line in lines}) == 4
+    names = [text.get_text() for text in lines[0].axes.get_legend().get_texts()]
+    assert names == [rf"$\lambda_{{{i}}}$" for i in (1, 2, 3, 4)]

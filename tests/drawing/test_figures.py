@@ -135,6 +135,12 @@ def test_a_section_shows_the_states_at_an_event(sol):
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
     assert legend(line.axes) == ["each time that $q_{1}$ passes 90 deg"]
+    *_, at, _ = sol.events[0].t
+    (right,) = plot(sol, "section", axes(), {"link": 2}, {}, valid_until=at)
+    *_, wrong = right.axes.lines
+    assert np.array_equal(right.get_ydata(), sol.events[0].qd[:-1, 1])
+    assert np.array_equal(wrong.get_ydata(), sol.events[0].qd[-1:, 1])
+    assert legend(right.axes)[1] == f"not right\nafter {at:.4g} s"
 
 
 def test_a_section_without_events_says_how_to_look_for_them():

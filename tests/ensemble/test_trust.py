@@ -176,7 +176,12 @@ def test_a_figure_of_two_axes_is_an_image_with_names_and_units():
     mask[2, 3] = False
     image, unresolved = found.plot("qd[2]", resolved=mask)
     assert image.colorbar.ax.get_ylabel() == r"$\dot q_{2}$ at the end (rad/s)"
-    assert np.array_equal(np.ma.getmaskarray(unresolved.get_array()), mask.T)
+    squares = [square[:4] for square in unresolved.get_path().to_polygons()]
+    marked = sorted(map(tuple, np.mean(squares, axis=1)))
+    assert np.array(marked) == pytest.approx(plane(6)[~mask])
+    assert unresolved.get_hatch()  # which print without colours shows, too
+    with pytest.raises(TypeError, match="shading"):
+        found.plot("qd[2]", shading="gouraud")
     plt.close("all")
 
 

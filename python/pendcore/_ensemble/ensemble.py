@@ -361,7 +361,7 @@ class Ensemble:
         ax : Axes, optional
             Default: those of a new figure of pyplot's, which is not shown.
         resolved : array_like of bool, (...), optional
-            What `resolved` found: what is not resolved is marked in red.
+            What `resolved` found: what is not resolved is hatched in red.
         **properties
             Passed on to matplotlib's ``pcolormesh`` or ``plot``.
 

@@ -121,20 +121,23 @@ class LyapunovExponents:
         return told if self.success else f"{told}; {self.status}: {self.message}"
 
     def plot(self, ax: Any = None, **line_properties: Any) -> list[Line2D]:
-        """Draw the finite-time exponents over time.
+        """Draw the finite-time exponents over time, each in its colour.
 
         ``ax`` is an axes of matplotlib's; the rest are properties of its ``Line2D``.
         """
-        from pendcore.plotting.axes import grid, new_axes
+        from pendcore.plotting.axes import grid, legend_above, new_axes
         from pendcore.plotting.style import theme_of
 
         (ax,) = new_axes((6.4, 4.0)) if ax is None else (ax,)
-        properties = {"color": theme_of(ax).ink, **line_properties}
-        lines: list[Line2D] = ax.plot(self.t, self.finite_time, **properties)
+        lines: list[Line2D] = []
+        for i, values in enumerate(self.finite_time.T):
+            ours = {"color": theme_of(ax).link(i), "label": rf"$\lambda_{{{i + 1}}}$"}
+            lines += ax.plot(self.t, values, **(ours | line_properties))
         ax.set(xlabel="t (s)", ylabel="Lyapunov exponents (1/s)")
         ax.axhline(0.0, color=theme_of(ax).quiet, linewidth=0.8, zorder=0)
         ax.margins(x=0)
         grid(ax)
+        legend_above(ax, columns=len(lines))
         return lines
 
 

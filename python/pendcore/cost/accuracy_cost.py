@@ -250,7 +250,7 @@ def _wrapped(name: str, sentence: str) -> list[str]:
 
 
 def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
-    from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator, NullFormatter
 
     theme = theme_of(ax)
     if not ax.lines:  # without points matplotlib finds no powers of ten to label
@@ -271,9 +271,8 @@ def _dress(ax: Axes, cost: AccuracyCost, y: str, unit: str) -> None:
         ax.axvspan(right, edge, color=theme.line, zorder=0)
     ax.xaxis.set_major_locator(LogLocator(base=100, numticks=20))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    if y == "time":  # plain numbers, also between powers of ten where there are few powers
-        ax.yaxis.set_major_formatter(LogFormatter())
-        ax.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(1.5, 0.5)))
+    if y == "time":  # labels also between powers of ten where there are few powers
+        ax.yaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.5, 0.5)))
     grid(ax)
 
 

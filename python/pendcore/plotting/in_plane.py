@@ -84,12 +84,12 @@ def draw_section(asked: Request) -> list[Artist]:
     moving = int(np.argmax(spans > 1e-6)) + 1  # the first whose angle is not always the same, or 1
     link = _within("link", moving if asked.link is None else asked.link, 1, angles.shape[1])
     axis = one_axes(asked.ax, _SIZE, asked.new_figure)
-    ours: dict[str, Any] = {"color": theme_of(axis).link(link - 1), "linestyle": "", "marker": "."}
-    ours |= {"markersize": 3.0 if len(found) > 50 else 6.0}
-    ours |= {"label": asked.label or _each_time(wanted), **asked.properties}
-    lines = axis.plot(angles[:, link - 1], found.qd[:, link - 1], **ours)
+    marks: dict[str, Any] = {"marker": ".", "markersize": 3.0 if len(found) > 50 else 6.0}
+    ours = {"color": theme_of(axis).link(link - 1), "label": asked.label or _each_time(wanted)}
+    points = np.stack([angles[:, link - 1], found.qd[:, link - 1]], axis=1)
+    lines = _draw(axis, found.t, points, asked, ours, {"linestyle": "", **marks})
     _name(axis, f"$q_{{{link}}}$ (rad)", rf"$\dot q_{{{link}}}$ (rad/s)")
-    return [*lines]
+    return lines
 
 
 def _each_time(event: Event) -> str:
@@ -111,17 +111,27 @@ def _count(axis: Axes) -> int:
 
 
 def _draw(
-    axis: Axes, t: Floats, points: Floats, asked: Request, ours: dict[str, Any]
+    axis: Axes,
+    t: Floats,
+    points: Floats,
+    asked: Request,
+    ours: dict[str, Any],
+    marks: dict[str, Any] | None = None,
 ) -> list[Artist]:
-    """Draw a curve (k, 2), pale where it is past the horizon; its name says until when."""
-    how = {"marker": point_style(t), "linewidth": 1.0, **ours, **asked.properties}
+    """Draw points (k, 2), pale where they are past the horizon; a name says until when.
+
+    A curve joins them unless they are drawn as marks.
+    """
+    marks = marks or {}
+    how = {"marker": point_style(t), "linewidth": 1.0, **marks, **ours, **asked.properties}
     count = int((np.abs(t - t[0]) <= abs(asked.until - t[0])).sum())
     lines = axis.plot(*points[:count].T, gid=_GID, **how)
     if count < len(t):
         known = {line.get_label() for other in axis.figure.axes for line in other.lines}
         said = "_" if asked.after() in known else asked.after()
-        pale: dict[str, Any] = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1}
-        axis.plot(*points[max(count - 1, 0) :].T, label=said, **pale)
+        pale = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1, **marks}
+        first = count if marks else max(count - 1, 0)  # a curve goes on from where it was right
+        axis.plot(*points[first:].T, label=said, **pale)
     return [*lines]
 
 

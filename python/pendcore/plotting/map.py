@@ -10,7 +10,7 @@ import numpy.typing as npt
 from pendcore import Ensemble
 from pendcore.messages import Floats
 from pendcore.plotting.axes import legend_above, one_axes, require_name, whole_names
-from pendcore.plotting.style import as_drawn, theme_of
+from pendcore.plotting.style import applied, as_drawn, keep_ticks, theme_of
 from pendcore.reducers import FirstEvent, Reducer
 
 WIDE = 30.0
@@ -75,7 +75,7 @@ def plot(
     if len(axes) == 1:
         given = whole_names(Ensemble.plot, Line2D, properties)
         return _draw_curve(one_axes(ax, MAP_SIZE), axes[0], shown, mask, given)
-    given = whole_names(Ensemble.plot, QuadMesh, properties, ("shading", "vmin", "vmax"))
+    given = whole_names(Ensemble.plot, QuadMesh, properties, ("vmin", "vmax"))
     return draw_map(one_axes(ax, MAP_SIZE), axes[0], axes[1], shown, mask, given)
 
 
@@ -137,8 +137,8 @@ def draw_map(
     axis: Any, x: Axis, y: Axis, shown: Shown, resolved: Mask | None, properties: dict[str, Any]
 ) -> list[Any]:
     """Draw values (n_x, n_y), and mark what is not resolved, and what has no value."""
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
+    from matplotlib.patches import Patch, PathPatch
+    from matplotlib.path import Path
 
     theme = theme_of(axis)
     mesh: dict[str, Any] = {"shading": "nearest", "rasterized": True, "cmap": "viridis"}
@@ -146,19 +146,23 @@ def draw_map(
     values = np.ma.masked_where(shown.is_log & ~(shown.values > 0), shown.values)
     image = axis.pcolormesh(x.values, y.values, values.T, **(mesh | scale | properties))
     axis.set(xlabel=x.label, ylabel=y.label)
-    axis.figure.colorbar(image, ax=axis, label=shown.label)
+    with applied():
+        keep_ticks(axis.figure.colorbar(image, ax=axis, label=shown.label).ax)
     grounds = zip(shown.blanks.items(), (theme.ground, theme.line, theme.quiet), strict=False)
-    marks = [(name, mask, color) for (name, mask), color in grounds]
-    if resolved is not None:
-        marks.append(("not resolved", ~resolved, theme.red))
+    marks = [(name, mask, color, "") for (name, mask), color in grounds]
+    if resolved is not None:  # hatched, as print without colours has no red
+        marks.append(("not resolved", ~resolved, theme.red, "//////"))
+    corners = image.get_coordinates()  # (n_y + 1, n_x + 1, 2)
+    sides = (corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1])
+    pixels = np.stack(sides, axis=2)
     drawn, patches = [image], []
-    for name, mask, color in marks:
+    for name, mask, color, hatch in marks:
         if mask.any():
-            pixels = np.where(mask, 1.0, np.nan)
-            how = mesh | {"cmap": ListedColormap([color])}
-            drawn.append(axis.pcolormesh(x.values, y.values, pixels.T, **how))
-            share = f"{name}: {mask.mean():.2%}"
-            patches.append(Patch(facecolor=color, edgecolor=theme.quiet, label=share))
+            ours: dict[str, Any] = {"facecolor": color, "hatch": hatch}
+            ours["edgecolor"] = theme.ground if hatch else theme.quiet
+            together = Path.make_compound_path_from_polys(pixels[mask.T])
+            drawn.append(axis.add_patch(PathPatch(together, lw=0, rasterized=True, **ours)))
+            patches.append(Patch(label=f"{name}: {mask.mean():.2%}", **ours))
     legend_above(axis, patches)
     return drawn
 

@@ -33,7 +33,7 @@ _FIGURES: dict[str, tuple[Callable[[Request], list[Artist]], tuple[str, ...]]] =
     "energy": (draw_energy, _ALONG_CURVES),
     "path": (draw_path, _ALONG_CURVES),
     "phase": (draw_phase, _ALONG_CURVES),
-    "section": (draw_section, ("event", "link", "label")),
+    "section": (draw_section, ("event", "link", *_ALONG_CURVES)),
     "strip": (draw_strip, ("t",)),
     "free_bodies": (draw_free_bodies, ("t",)),
 }

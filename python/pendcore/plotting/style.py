@@ -140,17 +140,22 @@ def applied(others: Mapping[str, Any] | None = None) -> AbstractContextManager[N
 
 
 def keep_style(axes: Axes) -> None:
-    """Fix the style of ticks, which matplotlib makes when it draws, by what is set then.
+    """Fix the style of ticks by what is set now, at multiples of 1, 2 and 5.
 
-    They are at multiples of 1, 2 and 5: those of 2.5 take more room than constrained layout knows.
+    Those of 2.5 take more room than constrained layout knows.
     """
+    keep_ticks(axes)
+    axes.locator_params(steps=[1, 2, 5, 10])
+
+
+def keep_ticks(axes: Axes) -> None:
+    """Fix how ticks look, which matplotlib makes when it draws, by what is set now."""
     import matplotlib as mpl
 
     of: Any = mpl.rcParams
     for name in ("x", "y"):
         own: Any = {key: of[f"{name}tick.{key}"] for key in ("color", "labelcolor", "labelsize")}
         getattr(axes, f"{name}axis").set_tick_params(which="both", **own)
-    axes.locator_params(steps=[1, 2, 5, 10])
 
 
 def theme_of(axes: Axes) -> Theme:
