@@ -60,9 +60,12 @@ class FromDefect:
 
     def serves(self, start: Start, error: float) -> bool:
         """Whether it is tried for an error of a smooth scene."""
-        is_expensive = series_work(start.scene, 1e-3) > tuning.EXPENSIVE
         least, most = self.errors
-        return least <= error < most and (is_expensive or not self.series_are_expensive)
+        if not least <= error < most:
+            return False
+        if not self.series_are_expensive:
+            return True
+        return series_work(start.scene, 1e-3) > tuning.EXPENSIVE
 
     def correction(self, start: Start, scale: float) -> _core.DefectCorrection:
         """Return what is to look on while a trial of a typical error, ``scale``, is made."""
