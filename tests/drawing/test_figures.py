@@ -234,8 +234,18 @@ def test_what_is_past_the_horizon_is_shaded_or_pale():
         assert len(line.get_xdata()) < 0.95 * len(chaotic.plot(what, axes())[0].get_xdata())
     lines = chaotic.plot("path", axes(), horizon=0.1)[0].axes.lines
     assert [x.get_color() for x in lines if x.get_marker() == "o"] == [LIGHT.lost] * 2
-    right = pc.simulate(BOOK, q0=[1.0, 1.0], t_span=(0, 1)).plot(ax=axes(2), horizon=0.1)
-    assert not right[0].axes.patches
+    right = pc.simulate(BOOK, q0=[1.0, 1.0], t_span=(0, 1))
+    lines = right.plot(ax=axes(2), horizon=0.1)
+    assert not lines[0].axes.patches
+    assert "right to 0.1 rad\nto the end" in legend(lines[0].axes)
+    assert right.plot(ax=axes(2))[0].axes.get_legend() is None
+    for what in ("angles", "phase"):  # of two runs in one figure, it says whose horizon it is
+        (ax,) = axes()
+        right.plot(what, ax, label="small", horizon=0.1)
+        chaotic.plot(what, ax, label="large", horizon=0.1)
+        said = [f"large: not right to 0.1 rad\nafter {until:.4g} s"]
+        said.append("small: right to 0.1 rad\nto the end")
+        assert sorted(x for x in legend(ax) if "rad" in x) == said, what
 
 
 REFUSED = [

@@ -153,8 +153,11 @@ def test_a_run_is_pale_past_its_horizon():
     said = [text.get_text() for text in film.figure.subfigs[0].axes[0].texts]
     assert f"right to 0.1 rad until {until:.4g} s" in said
     fast = stage(chaotic, chaotic, horizon=0.1, speed=4).figure.subfigs[0].axes[0]
-    told = f"4 \N{MULTIPLICATION SIGN} real time\nright to 0.1 rad until {until:.4g} s"
+    told = f"4 \N{MULTIPLICATION SIGN} real time\nall right to 0.1 rad until {until:.4g} s"
     assert told in [text.get_text() for text in fast.texts]
+    short = pc.simulate(pc.Scene.textbook(), q0=1.0, t_span=(0, 1))
+    beside = stage(short, horizon=0.1).figure.subfigs[0].axes[0]
+    assert "right to 0.1 rad to the end" in [text.get_text() for text in beside.texts]
 
 
 def test_a_gif_has_the_frames_the_size_the_time_and_the_chain(sol, tmp_path):

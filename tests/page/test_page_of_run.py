@@ -163,6 +163,16 @@ def test_it_is_pale_past_the_time_until_which_it_is_right(opened):
     assert page.text("trust") == f"right to 0.1 rad until {until:.4g} s"
     page.do("pendcorePage.go(29)")
     assert page.text("trust") == f"not right any more, since {until:.4g} s"
+    page.enter("#compare", "a start 0.001 rad away")
+    page.wait("pendcorePage.other.until !== null")
+    beside = page.ask("pendcorePage.other.until")
+    assert beside < 30.0
+    first = min(until, beside)
+    assert page.text("trust") == f"not both right any more, since {first:.4g} s"
+    page.do("pendcorePage.go(1)")
+    assert page.text("trust") == f"both right to 0.1 rad until {first:.4g} s"
+    page.do("pendcorePage.other.until = 0.5; pendcorePage.draw()")
+    assert page.text("trust") == "not both right any more, since 0.5000 s"
 
 
 def test_the_ghost_starts_a_billionth_of_a_radian_away(page):

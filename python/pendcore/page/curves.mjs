@@ -3,6 +3,7 @@
 import { convention, wrapped } from "./angles.mjs";
 import { linkColor, partColor } from "./canvas.mjs";
 import { Chart } from "./chart.mjs";
+import { firstWrong } from "./runs.mjs";
 import { clamp } from "./simulate.mjs";
 
 const POINTS = { least: 1500, most: 6000, angle: 0.1 }; // between two, a link turns by this, rad
@@ -84,6 +85,7 @@ export class Curves {
 
   /** Draws the angles of this run, and dashed those of another beside it, if there is one. */
   compare(other, name) {
+    this.together = other ? [this.run, other] : [this.run];
     const told = convention();
     const curves = (moments, isDashed, suffix) =>
       Array.from({ length: this.run.n }, (_x, i) => ({
@@ -163,12 +165,17 @@ export class Curves {
     );
   }
 
-  /** Marks the present, and shades what lies past the time until which the run is right. */
+  /** Marks the present, and shades what lies past the time until which what it shows is right. */
   draw(moment) {
     const { run } = this;
     const { t } = moment;
-    const overTime = { now: t, shade: run.isRight(run.end) ? null : [run.until, run.end] };
-    for (const chart of [this.angles, this.energy, this.work]) chart.draw(overTime);
+    const marked = (runs) => {
+      const first = firstWrong(runs);
+      return { now: t, shade: first ? [first.until, first.end] : null };
+    };
+    const overTime = marked([run]);
+    this.angles.draw(marked(this.together));
+    for (const chart of [this.energy, this.work]) chart.draw(overTime);
     const points = this.pairs.map(({ color, at }) => {
       const [x, y] = at(moment);
       return { x, y, color };

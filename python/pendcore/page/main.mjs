@@ -8,7 +8,7 @@ import { Chart } from "./chart.mjs";
 import { Controls } from "./controls.mjs";
 import { copyAndSay } from "./copy.mjs";
 import { Curves, drawCost } from "./curves.mjs";
-import { coreBytes, LiveRun, Recording } from "./runs.mjs";
+import { coreBytes, LiveRun, Recording, trust } from "./runs.mjs";
 import { SceneView } from "./scene_view.mjs";
 import { clamp, grid, simulateCase } from "./simulate.mjs";
 import { listenToKeys, listenToPointer, listenToWheel, STEP } from "./touch.mjs";
@@ -159,6 +159,7 @@ class Page {
     this.ghost = this.#beside(this.ghost, byId("ghost").checked && away(GHOST));
     /** The run beside this one, if there is one. */
     this.other = this.#beside(this.other, this.comparisons[name]);
+    this.runs = [this.run, this.other].filter(Boolean);
     for (const id of ["own-name", "beside"]) byId(id).hidden = !this.other;
     byId("other-name").textContent = name;
     this.curves.compare(this.other?.n === this.run.n ? this.other : null, name);
@@ -173,7 +174,7 @@ class Page {
     const given = structuredClone(this.given);
     change(given);
     try {
-      return new LiveRun(this.core, given);
+      return Object.assign(new LiveRun(this.core, given), { given });
     } catch (error) {
       say(`The run beside this one is refused: ${error.message}`);
       return null;
@@ -208,15 +209,17 @@ class Page {
 
   /** What takes longer than a frame comes later; what is told of an older run is dropped. */
   async #ask() {
-    const { run, background } = this;
+    const { run, other, background } = this;
     if (!background) return;
+    const isPast = () => run !== this.run || other !== this.other;
     await new Promise((resolve) => setTimeout(resolve, ASKED));
-    if (run !== this.run) return;
+    if (isPast()) return;
     const given = structuredClone(this.given);
     try {
-      if (run.until === null) {
-        run.until = await background.ask("horizon", given, { limit: data.limit });
-        if (run !== this.run) return;
+      for (const one of this.runs.filter(({ until }) => until === null)) {
+        const of = one === run ? given : one.given;
+        one.until = await background.ask("horizon", of, { limit: data.limit });
+        if (isPast()) return;
         this.curves.choose();
         this.draw();
       }
@@ -224,24 +227,20 @@ class Page {
         byId("rate").textContent = "computing a thousand neighbours";
         const found = await background.ask("neighbours", given, NEIGHBOURS);
         byId("rate").textContent = "";
-        if (run !== this.run) return;
+        if (isPast()) return;
         this.neighbours = found;
         this.draw();
       }
     } catch (error) {
-      if (run === this.run) this.unknown = `how far it is right is not known: ${error.message}`;
+      if (!isPast()) this.unknown = `how far it is right is not known: ${error.message}`;
     }
   }
 
   /** The words of the badge, for what is shown now, and the colour of its dot. */
   #trust() {
-    const { run, t } = this;
     if (this.isRefused) return ["the picture is that of the last run that was possible", "red"];
-    if (run.until === null) return [this.unknown, "quiet"];
-    if (run.isRight(run.end)) return [`right to ${data.limit} rad to the end`, "green"];
-    const until = `${run.until.toPrecision(4)} s`;
-    if (run.isRight(t)) return [`right to ${data.limit} rad until ${until}`, "ochre"];
-    return [`not right any more, since ${until}`, "red"];
+    if (this.runs.some(({ until }) => until === null)) return [this.unknown, "quiet"];
+    return trust(this.runs, this.t, data.limit);
   }
 
   #sayTrust() {
@@ -287,14 +286,14 @@ class Page {
     this.view.canvas.setAttribute("aria-label", `At ${t.toFixed(2)} s: ${angles.join(", ")}`);
   }
 
-  /** What the picture of a run shows at a time; it is pale where this page's run is not right. */
+  /** What the picture of a run shows at a time; it is pale where the run is not right. */
   #shown(run, now) {
     const { t, places } = now;
     return {
       places,
       t,
       lengths: run.lengths,
-      isLost: !this.run.isRight(t),
+      isLost: !run.isRight(t),
       forces: byId("reactions").checked ? now.forces : null,
       path: byId("trace").checked ? this.#path(t, run) : null,
     };

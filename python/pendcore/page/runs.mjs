@@ -70,6 +70,22 @@ class Played {
   }
 }
 
+/** Which of some runs is wrong first, if one is. */
+export function firstWrong(runs) {
+  const wrong = runs.filter((one) => !one.isRight(one.end));
+  return wrong.reduce((a, b) => (a?.isRight(b.until) === false ? a : b), undefined);
+}
+
+/** Until when all of some runs are right to `limit` rad, in words, and the colour of their dot. */
+export function trust(runs, t, limit) {
+  const both = runs.length > 1 ? "both " : "";
+  const first = firstWrong(runs);
+  if (!first) return [`${both}right to ${limit} rad to the end`, "green"];
+  const until = `${first.until.toPrecision(4)} s`;
+  if (first.isRight(t)) return [`${both}right to ${limit} rad until ${until}`, "ochre"];
+  return [`not ${both}right any more, since ${until}`, "red"];
+}
+
 /** A run that the core has made: it has a state at any time. */
 export class LiveRun extends Played {
   isLive = true;

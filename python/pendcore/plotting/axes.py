@@ -79,10 +79,20 @@ class Request:
 
     def shade(self, axes: Sequence[Axes]) -> None:
         """Shade the times past which nothing is right; the legend of the first axes says so."""
+        self.say_right_to_its_end(axes[0])
         for k, axis in enumerate([] if self.is_right_to_its_end else axes):
             how: dict[str, Any] = {"facecolor": theme_of(axis).line, "alpha": 0.6, "zorder": 0}
             how["label"] = "_" * k + self.after()
             axis.axvspan(self.until, self.solution.t_reached, **how)
+
+    def say_right_to_its_end(self, axis: Axes) -> None:
+        """Let the legend say that the run is right to its end, if it was asked until when it is."""
+        said = f"{self._whose()}{self.right()}\nto the end"
+        if self.horizon is not None and self.is_right_to_its_end and said not in named(axis):
+            axis.scatter([], [], s=0.0, label=said)
+
+    def _whose(self) -> str:
+        return "" if self.label is None else f"{self.label}: "
 
     def right(self) -> str:
         """Return the words for what is right."""
@@ -90,7 +100,12 @@ class Request:
 
     def after(self) -> str:
         """Return the words for what lies past the time until which a run is right."""
-        return f"not {self.right()}\nafter {self.until:.4g} s"
+        return f"{self._whose()}not {self.right()}\nafter {self.until:.4g} s"
+
+
+def named(axis: Axes) -> set[str]:
+    """Return what the legends of all axes of a figure name."""
+    return {x for other in axis.figure.axes for x in other.get_legend_handles_labels()[1]}
 
 
 def new_axes(

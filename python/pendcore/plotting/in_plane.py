@@ -8,7 +8,7 @@ import numpy as np
 
 from pendcore.events import Event, LinkAngle
 from pendcore.messages import Floats, whole_number
-from pendcore.plotting.axes import Request, grid, legend_above, one_axes, point_style
+from pendcore.plotting.axes import Request, grid, legend_above, named, one_axes, point_style
 from pendcore.plotting.curve import curve_of
 from pendcore.plotting.style import DASHES, as_drawn, theme_of
 
@@ -126,9 +126,9 @@ def _draw(
     how = {"marker": point_style(t), "linewidth": 1.0, **marks, **ours, **asked.properties}
     count = int((np.abs(t - t[0]) <= abs(asked.until - t[0])).sum())
     lines = axis.plot(*points[:count].T, gid=_GID, **how)
+    asked.say_right_to_its_end(axis)
     if count < len(t):
-        known = {line.get_label() for other in axis.figure.axes for line in other.lines}
-        said = "_" if asked.after() in known else asked.after()
+        said = "_" if asked.after() in named(axis) else asked.after()
         pale = {"color": theme_of(axis).lost, "linewidth": 0.8, "zorder": 1, **marks}
         first = count if marks else max(count - 1, 0)  # a curve goes on from where it was right
         axis.plot(*points[first:].T, label=said, **pale)

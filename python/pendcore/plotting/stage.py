@@ -286,8 +286,11 @@ def _frame_scene(axis: Axes, runs: Sequence[_Run], reach: float) -> None:
 def _told(asked: Sequence[Request], speed: float, panels: Sequence[Axes]) -> str:
     """Say how fast time passes, and until when all runs are right; shade the curves after that."""
     told = [] if speed == 1.0 else [f"{speed:g} \N{MULTIPLICATION SIGN} real time"]
+    all_of_them = "all " if len(asked) > 1 else ""
     if wrong := [one for one in asked if not one.is_right_to_its_end]:
         first = min(wrong, key=lambda one: abs(one.until - one.solution.t_span[0]))
         first.shade(panels)
-        told.append(f"{first.right()} until {first.until:.4g} s")
+        told.append(f"{all_of_them}{first.right()} until {first.until:.4g} s")
+    elif asked[0].horizon is not None:
+        told.append(f"{all_of_them}{asked[0].right()} to the end")
     return "\n".join(told)
