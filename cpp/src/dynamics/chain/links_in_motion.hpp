@@ -111,14 +111,15 @@ struct CoupledForce {
 };
 
 /// Returns qdd of a link whose joint accelerates by a, and makes a the acceleration of the next
-/// joint.
+/// joint. With qdd first, GCC 12 copies no number between the fused operations that wait for each
+/// other: a copy (vmovsd) takes a cycle, and chains of ten rods and more took 1.03 of the time.
 template <class Number>
 PENDCORE_INLINE Number go_to_next_joint(const FreeResponse<Number>& k, const Number& s,
                                         const Number& c, const Number& L, const Number& centripetal,
                                         JointAcceleration<Number>& a) {
+  const Number qdd = fma(-k.y, a.y, fma(-k.x, a.x, k.free));
   const Number x = fma(-centripetal, c, a.x);
   const Number y = fma(-centripetal, s, a.y);
-  const Number qdd = fma(-k.y, a.y, fma(-k.x, a.x, k.free));
   a = {fma(-(L * s), qdd, x), fma(L * c, qdd, y)};
   return qdd;
 }
