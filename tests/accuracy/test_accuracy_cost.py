@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pendcore as pc
 import pytest
+from matplotlib.figure import Figure
 from pendcore._accuracy.position_error import time_grid
 from pendcore.cli import main
 from pendcore.cost.point import Point, duration, front, seconds_at
@@ -183,6 +184,10 @@ def test_the_figure_has_a_line_a_method_with_its_unit_and_shades_what_is_not_kno
     assert unit if y == "time" else ax.get_ylabel() == "right-hand sides (of taylor: expansions)"
     (known,) = [p for p in ax.patches if p.get_width()]
     assert known.get_bbox().x1 == pytest.approx(book.uncertainty)
+    assert ax.get_legend().get_title().get_text().startswith("What accuracy costs: ")
+    given = Figure().subplots()
+    book.plot(given, y=y)
+    assert given.get_legend().get_title().get_text() == ""
 
 
 def test_the_figure_refuses_what_it_cannot_draw(book):

@@ -132,6 +132,10 @@ def test_the_phase_portrait_has_a_curve_for_each_link(sol):
 def test_a_section_shows_the_states_at_an_event(sol):
     (line,) = sol.plot("section", axes(), link=2)
     assert len(line.get_xdata()) == len(sol.events[0]) > 2
+    turns = pc.events.LinkAngle(1, np.pi / 2, direction=1)
+    long = pc.simulate(BOOK, q0=1.0, t_span=(0, 2000), store="end", events=[turns])
+    (many,) = long.plot("section", axes(), link=2)
+    assert many.get_markersize() < line.get_markersize() / 2
     assert np.cos(line.get_xdata()) == pytest.approx(np.cos(sol.events[0].q[:, 1]))
     assert np.array_equal(line.get_ydata(), sol.events[0].qd[:, 1])
     assert legend(line.axes) == ["each time that $q_{1}$ passes 90 deg"]

@@ -143,7 +143,7 @@ class AccuracyCost:
         Parameters
         ----------
         ax : Axes, optional
-            Default: a new figure of pyplot's, which is not shown.
+            They get no title. Default: a new figure of pyplot's, which is not shown.
         y : {"time", "nfev"}
             The vertical axis shows the least time of a call, or the number of right-hand sides.
         **line_properties
@@ -179,7 +179,8 @@ class AccuracyCost:
         _dress(axis, self, y, unit)
         start, end = self.t_span
         title = f"What accuracy costs: {self.name or 'chain of links'}, {start:.4g} to {end:.4g} s"
-        legend_above(axis, [*lines, *_others(theme, self, y)], title=as_drawn(title))
+        told = as_drawn(title) if ax is None else None
+        legend_above(axis, [*lines, *_others(theme, self, y)], title=told)
         return lines
 
     def to_dict(self) -> dict[str, Any]:

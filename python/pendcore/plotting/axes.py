@@ -50,16 +50,24 @@ class Request:
     horizon: float | None = None
     properties: dict[str, Any] = field(default_factory=dict)
 
-    def several_axes(self, counts: Sequence[int], which: str, columns: int = 1) -> list[Axes]:
-        """Return the axes that were given, or the most of ``counts`` in a new figure."""
+    def several_axes(
+        self, counts: Sequence[int], which: str, columns: int = 1, last: float = 1.0
+    ) -> list[Axes]:
+        """Return the axes that were given, or the most of ``counts`` in a new figure.
+
+        The last row is ``last`` times as high as the others.
+        """
         if self.ax is not None:
             return checked_axes(self.ax, counts, which)
         count = max(counts)
         rows = ceil(count / columns)
         columns = ceil(count / rows)
-        size = (6.4, max(3.6, 0.6 + 1.8 * rows)) if columns == 1 else (3.2 * columns, 3.2 * rows)
+        heights = [1.0] * (rows - 1) + [last]
+        tall = max(3.6, 0.6 + 1.8 * sum(heights))
+        size = (6.4, tall) if columns == 1 else (3.2 * columns, 3.2 * rows)
         shared = "col" if columns == 1 else "none"
-        axes = new_axes(size, rows, columns, self.new_figure, sharex=shared)
+        how: dict[str, Any] = {"sharex": shared, "height_ratios": heights}
+        axes = new_axes(size, rows, columns, self.new_figure, **how)
         for unused in axes[count:]:
             unused.remove()
         return axes[:count]

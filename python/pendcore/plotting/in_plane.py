@@ -84,7 +84,8 @@ def draw_section(asked: Request) -> list[Artist]:
     moving = int(np.argmax(spans > 1e-6)) + 1  # the first whose angle is not always the same, or 1
     link = _within("link", moving if asked.link is None else asked.link, 1, angles.shape[1])
     axis = one_axes(asked.ax, _SIZE, asked.new_figure)
-    marks: dict[str, Any] = {"marker": ".", "markersize": 3.0 if len(found) > 50 else 6.0}
+    size = 6.0 * (50 / max(len(found), 50)) ** 0.35  # the more there are, the smaller they are
+    marks: dict[str, Any] = {"marker": ".", "markersize": size}
     ours = {"color": theme_of(axis).link(link - 1), "label": asked.label or _each_time(wanted)}
     points = np.stack([angles[:, link - 1], found.qd[:, link - 1]], axis=1)
     lines = _draw(axis, found.t, points, asked, ours, {"linestyle": "", **marks})
