@@ -285,11 +285,12 @@ def test_two_runs_are_shown_side_by_side(page, sol):
     assert page.ask("document.getElementById('beside').hidden")
     offered = page.ask("[...document.querySelectorAll('#compare option')].map((one) => one.value)")
     assert offered == [
-        "nothing", "without 1: ViscousJoint", "a start 0.001 rad away", "the run as it was"
+        "nothing", "without 1: ViscousJoint", "the last link 0.001 rad further",
+        "the last link 0.1 rad further", "the run as it was",
     ]  # fmt: skip
     free = pc.simulate(pc.Scene.textbook(), q0=[0.8, 1.0], t_span=(0, 8))
-    away = pc.simulate(sol.scene, q0=[0.8, 1.001], t_span=(0, 8))
-    for name, run in zip(offered[1:], (free, away, sol), strict=True):
+    near, far = (pc.simulate(sol.scene, q0=[0.8, 1.0 + x], t_span=(0, 8)) for x in (0.001, 0.1))
+    for name, run in zip(offered[1:], (free, near, far, sol), strict=True):
         page.enter("#compare", name)
         assert page.ask("document.getElementById('beside').hidden") is False
         assert page.text("other-name") == name

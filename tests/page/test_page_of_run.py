@@ -163,7 +163,7 @@ def test_it_is_pale_past_the_time_until_which_it_is_right(opened):
     assert page.text("trust") == f"right to 0.1 rad until {until:.4g} s"
     page.do("pendcorePage.go(29)")
     assert page.text("trust") == f"not right any more, since {until:.4g} s"
-    page.enter("#compare", "a start 0.001 rad away")
+    page.enter("#compare", "the last link 0.001 rad further")
     page.wait("pendcorePage.other.until !== null")
     beside = page.ask("pendcorePage.other.until")
     assert beside < 30.0

@@ -146,7 +146,8 @@ class Page {
     this.comparisons = {
       [NOTHING]: null,
       ...Object.fromEntries(without),
-      "a start 0.001 rad away": away(1e-3),
+      "the last link 0.001 rad further": away(1e-3),
+      "the last link 0.1 rad further": away(0.1),
       "the run as it was": (given) => Object.assign(given, parseCase(original)),
     };
     menu.replaceChildren(...Object.keys(this.comparisons).map((one) => new Option(one)));
