@@ -228,7 +228,7 @@ class Page {
         byId("rate").textContent = "computing a thousand neighbours";
         const found = await background.ask("neighbours", given, NEIGHBOURS);
         byId("rate").textContent = "";
-        if (isPast()) return;
+        if (run !== this.run) return;
         this.neighbours = found;
         this.draw();
       }
