@@ -175,7 +175,7 @@ class Page {
     const given = structuredClone(this.given);
     change(given);
     try {
-      return Object.assign(new LiveRun(this.core, given), { given });
+      return new LiveRun(this.core, given);
     } catch (error) {
       say(`The run beside this one is refused: ${error.message}`);
       return null;
@@ -215,18 +215,16 @@ class Page {
     const isPast = () => run !== this.run || other !== this.other;
     await new Promise((resolve) => setTimeout(resolve, ASKED));
     if (isPast()) return;
-    const given = structuredClone(this.given);
     try {
       for (const one of this.runs.filter(({ until }) => until === null)) {
-        const of = one === run ? given : one.given;
-        one.until = await background.ask("horizon", of, { limit: data.limit });
+        one.until = await background.ask("horizon", one.given, { limit: data.limit });
         if (isPast()) return;
         this.curves.choose();
         this.draw();
       }
       if (byId("neighbours").checked && !this.neighbours) {
         byId("rate").textContent = "computing a thousand neighbours";
-        const found = await background.ask("neighbours", given, NEIGHBOURS);
+        const found = await background.ask("neighbours", run.given, NEIGHBOURS);
         byId("rate").textContent = "";
         if (run !== this.run) return;
         this.neighbours = found;

@@ -50,6 +50,8 @@ class Played {
   until = null;
 
   constructor(given, { t, accounts, message, success }) {
+    /** The case that was run: that of the page goes on changing. */
+    this.given = structuredClone(given);
     this.steps = t;
     this.begin = t[0];
     this.end = t.at(-1);

@@ -87,8 +87,10 @@ class Request:
 
     def shade(self, axes: Sequence[Axes]) -> None:
         """Shade the times past which nothing is right; the legend of the first axes says so."""
-        self.say_right_to_its_end(axes[0])
-        for k, axis in enumerate([] if self.is_right_to_its_end else axes):
+        if self.is_right_to_its_end:
+            self.say_right_to_its_end(axes[0])
+            return
+        for k, axis in enumerate(axes):
             how: dict[str, Any] = {"facecolor": theme_of(axis).line, "alpha": 0.6, "zorder": 0}
             how["label"] = "_" * k + self.after()
             axis.axvspan(self.until, self.solution.t_reached, **how)

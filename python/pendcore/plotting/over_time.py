@@ -70,7 +70,7 @@ def draw_energy(asked: Request) -> list[Artist]:
         panels["residual (J)"] = ["residual"]
         parts |= booked
     which = "for the energies, the ledger and its residual"
-    axes = asked.several_axes((1, len(panels)), which, last=0.6 if len(panels) > 1 else 1.0)
+    axes = asked.several_axes((1, len(panels)), which, last=0.6)
     curves = in_colors(parts, theme_of(axes[0]), ("total", "residual"))
     shown = {label: {name: curves[name] for name in names} for label, names in panels.items()}
     return draw_curves(asked, axes, curve.t, shown)
